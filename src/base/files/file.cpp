@@ -1,13 +1,11 @@
 #include "base/files/file.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <fstream>
+#include <random>
 #include <system_error>
 
 #include "base/error.h"
@@ -25,24 +23,41 @@ fs::path folderOf(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+/// The part of a temporary file's name that makes it unique, in characters.
+constexpr size_t uniqueLength = 6;
+
+std::string uniqueText() {
+    constexpr std::string_view characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+    std::random_device random;
+    std::uniform_int_distribution<size_t> choose(0, characters.size() - 1);
+    std::string text;
+    for (size_t i = 0; i < uniqueLength; ++i) text += characters[choose(random)];
+    return text;
+}
+
 /// Creates an empty file beside `path` with a name that no other process uses, and returns the name.
 fs::path createTemporary(const fs::path& path) {
-    const fs::path suffix = path.extension();
-    std::string pattern =
-        (folderOf(path) / ("." + path.stem().string() + ".XXXXXX" + suffix.string())).string();
-    const int file = ::mkstemps(pattern.data(), static_cast<int>(suffix.string().size()));
-    if (file < 0) throw OutputError(path, "cannot create a file beside it: " + systemMessage(errno));
-    // mkstemps creates private files; give the output the permissions that the umask allows.
-    const mode_t mask = ::umask(0);
-    ::umask(mask);
-    ::fchmod(file, 0666 & ~mask);
-    ::close(file);
-    return pattern;
+    constexpr int attempts = 100;
+    int error = 0;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+        const fs::path temporary =
+            folderOf(path) / ("." + path.stem().string() + "." + uniqueText() + path.extension().string());
+        // Not mkstemps(): its files are private, and the umask cannot be read without changing it, which
+        // other threads would notice.
+        const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file >= 0) {
+            ::close(file);
+            return temporary;
+        }
+        error = errno;
+        if (error != EEXIST) break;
+    }
+    throw OutputError(path, "cannot create a file beside it: " + systemMessage(error));
 }
 
 /// A full disk may only be detected when data is flushed, after the writer has closed the file.
 void flushToDisk(const fs::path& temporary, const fs::path& path) {
-    const int file = ::open(temporary.c_str(), O_RDONLY);
+    const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) throw OutputError(path, "cannot be written: " + systemMessage(errno));
     const int result = ::fsync(file);
     const int error = errno;
@@ -83,7 +98,7 @@ fs::path linkTarget(const fs::path& path) {
     fs::path target = path;
     std::error_code fault;
     for (int links = 0; fs::is_symlink(fs::symlink_status(target, fault)); ++links) {
-        if (links == maxLinks) throw OutputError(path, "is a symbolic link in a circle of them");
+        if (links == maxLinks) throw OutputError(path, "is part of a cycle of symbolic links");
         const fs::path next = fs::read_symlink(target, fault);
         if (fault) throw OutputError(path, "is a symbolic link that cannot be read: " + fault.message());
         target = next.is_absolute() ? next : folderOf(target) / next;
@@ -126,14 +141,16 @@ void makeFolder(const fs::path& folder) {
 void removeStaleTemporaries(const fs::path& output) {
     const fs::path path = linkTarget(output);
     const std::string start = "." + path.stem().string() + ".", end = path.extension().string();
-    constexpr size_t unique = 6;  // characters, as in createTemporary()
-    std::error_code status;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folderOf(path), status)) {
-        const std::string name = entry.path().filename().string();
-        const bool ours = name.size() == start.size() + unique + end.size() && name.starts_with(start) &&
-                          name.ends_with(end) && name.find('.', start.size()) >= start.size() + unique;
+    std::error_code fault;
+    // The increment of a range-based for throws if the folder cannot be read to its end.
+    for (fs::directory_iterator entry(folderOf(path), fault); !fault && entry != fs::directory_iterator();
+         entry.increment(fault)) {
+        const std::string name = entry->path().filename().string();
+        const bool ours = name.size() == start.size() + uniqueLength + end.size() &&
+                          name.starts_with(start) && name.ends_with(end) &&
+                          name.find('.', start.size()) >= start.size() + uniqueLength;
         std::error_code ignored;
-        if (ours && entry.is_regular_file(ignored)) fs::remove(entry.path(), ignored);
+        if (ours && entry->is_regular_file(ignored)) fs::remove(entry->path(), ignored);
     }
 }
 
@@ -144,10 +161,9 @@ void writeAtomically(const fs::path& path, const std::function<void(const fs::pa
     try {
         write(temporary);
         flushToDisk(temporary, path);
-        fs::rename(temporary, target);
-    } catch (const fs::filesystem_error& error) {
-        fs::remove(temporary);
-        throw OutputError(path, "cannot be renamed into place: " + error.code().message());
+        std::error_code fault;
+        fs::rename(temporary, target, fault);
+        if (fault) throw OutputError(path, "cannot be renamed into place: " + fault.message());
     } catch (...) {
         std::error_code ignored;
         fs::remove(temporary, ignored);

@@ -49,6 +49,28 @@ TEST_F(FileTest, ReplacesAnOutputOnlyWhenTheWriterSucceeds) {
     EXPECT_EQ(files(), 1u);
 }
 
+TEST_F(FileTest, AFailedRenameLeavesNoTemporary) {
+    const fs::path out = folder / "a.txt";
+    try {
+        writeAtomically(out, [&](const fs::path& temporary) {
+            put(temporary, "new");
+            fs::create_directory(out);  // a file cannot replace it
+        });
+        FAIL() << "a folder was replaced";
+    } catch (const OutputError& error) {
+        EXPECT_NE(std::string(error.what()).find("cannot be renamed into place"), std::string::npos)
+            << error.what();
+    }
+    EXPECT_EQ(files(), 1u) << "the temporary file must be gone";
+}
+
+TEST_F(FileTest, OutputsHaveThePermissionsThatTheUmaskAllows) {
+    const mode_t before = ::umask(027);
+    writeTextAtomically(folder / "a.txt", "x");
+    EXPECT_EQ(::umask(before), mode_t{027}) << "the umask belongs to the whole process";
+    EXPECT_EQ(fs::status(folder / "a.txt").permissions(), static_cast<fs::perms>(0640));
+}
+
 TEST_F(FileTest, RefusesADirectoryAndAMissingFolderBeforeTheWriterRuns) {
     const auto never = [](const fs::path&) { FAIL() << "the writer ran"; };
     EXPECT_THROW(writeAtomically(folder, never), OutputError);
@@ -113,7 +135,13 @@ TEST_F(FileTest, FollowsSymbolicLinksOfOutputs) {
 TEST_F(FileTest, RefusesLinksThatLeadNowhere) {
     fs::create_symlink("b", folder / "a");
     fs::create_symlink("a", folder / "b");
-    EXPECT_THROW(writeTextAtomically(folder / "a", "x"), OutputError);
+    try {
+        writeTextAtomically(folder / "a", "x");
+        FAIL() << "a cycle of links was accepted";
+    } catch (const OutputError& error) {
+        EXPECT_NE(std::string(error.what()).find("is part of a cycle of symbolic links"), std::string::npos)
+            << error.what();
+    }
     fs::create_symlink(fs::path("none") / "c", folder / "c");
     EXPECT_THROW(checkWritable(folder / "c"), OutputError);
     fs::create_symlink(".", folder / "d");
