@@ -130,13 +130,16 @@ void copyElement(const std::byte* from, size_t components, bool normalized, Targ
     }
 }
 
-/// Copies element i of `elements` to target[slot(i) * components ...].
+/// Copies element i of `elements` to target[slot(i) * components ...], unless that is beyond the target's
+/// end.
 template <typename Target, typename Slot>
 void copyElements(const Elements& elements, std::span<Target> target, const Slot& slot) {
     if (elements.data.empty()) return;
     for (size_t i = 0; i < elements.count; ++i) {
+        const size_t place = slot(i) * elements.components;
+        if (place >= target.size()) continue;
         const std::byte* from = elements.data.data() + i * elements.stride;
-        Target* to = target.data() + slot(i) * elements.components;
+        Target* to = target.data() + place;
         switch (elements.type) {
             case Component::I8:
                 copyElement<int8_t>(from, elements.components, elements.normalized, to);
@@ -210,14 +213,18 @@ void checkShape(const Object& accessor, const Elements& elements, const Shape& s
     }
 }
 
+/// `most`: elements to read.
 template <typename Target>
-std::vector<Target> readFlat(const Document& document, int index, const Shape& shape, size_t& components) {
+std::vector<Target> readFlat(const Document& document, int index, const Shape& shape, size_t& components,
+                             size_t most = maxElements) {
     const Object& accessor = document.lists().accessors[static_cast<size_t>(index)];
     const Elements elements = baseElements(document, accessor);
     checkShape(accessor, elements, shape);
     components = elements.components;
-    std::vector<Target> target(elements.count * components);
-    copyElements(elements, std::span(target), [](size_t i) { return i; });
+    Elements wanted = elements;
+    wanted.count = std::min(elements.count, most);
+    std::vector<Target> target(wanted.count * components);
+    copyElements(wanted, std::span(target), [](size_t i) { return i; });
     applySparse(document, accessor, elements, std::span(target));
     return target;
 }
@@ -278,9 +285,9 @@ std::vector<uint32_t> readIndices(const Document& document, int accessor) {
     return readFlat<uint32_t>(document, accessor, {1, 1, true}, components);
 }
 
-std::vector<mat4> readMat4(const Document& document, int accessor) {
+std::vector<mat4> readMat4(const Document& document, int accessor, size_t most) {
     size_t components = 0;
-    const std::vector<float> flat = readFlat<float>(document, accessor, {16, 16, false}, components);
+    const std::vector<float> flat = readFlat<float>(document, accessor, {16, 16, false}, components, most);
     std::vector<mat4> matrices(flat.size() / 16);
     for (size_t i = 0; i < flat.size(); ++i) {
         matrices[i / 16][static_cast<int>(i % 16 / 4)][static_cast<int>(i % 4)] = flat[i];

@@ -32,7 +32,8 @@ std::vector<vec3> readVec3(const Document& document, int accessor);
 std::vector<vec4> readVec4(const Document& document, int accessor);
 /// Reads three or four components; a missing alpha is 1.
 std::vector<vec4> readColors(const Document& document, int accessor);
-std::vector<mat4> readMat4(const Document& document, int accessor);
+/// Reads the first `most` elements, or all if there are fewer.
+std::vector<mat4> readMat4(const Document& document, int accessor, size_t most);
 /// Reads unsigned integers of any width, without a range check.
 std::vector<uint32_t> readIndices(const Document& document, int accessor);
 std::vector<uvec4> readJoints(const Document& document, int accessor);

@@ -10,10 +10,22 @@
 namespace limpid::scene::gltf {
 namespace {
 
+/// The numbers (times and values) that the clips of a document may have: about as many as its buffer views
+/// could, at their highest compression.
+uint64_t maxNumbers(const Document& document) {
+    constexpr uint64_t floor = uint64_t{1} << 24, perByte = 16, most = uint64_t{1} << 28;
+    return std::min(floor + perByte * document.byteCount(), most);
+}
+
+/// Returns the accessor of a sampler's input or output.
+int accessorOf(const Document& document, const Object& sampler, const char* key) {
+    const int accessor = sampler.index(key, document.lists().accessors.size());
+    if (accessor == none) sampler.fail(fmt::format("has no {}", key));
+    return accessor;
+}
+
 std::vector<float> readTimes(const Document& document, const Object& sampler) {
-    const int accessor = sampler.index("input", document.lists().accessors.size());
-    if (accessor == none) sampler.fail("has no input");
-    std::vector<float> times = readScalars(document, accessor);
+    std::vector<float> times = readScalars(document, accessorOf(document, sampler, "input"));
     if (times.empty()) sampler.fail("input", "has no times");
     for (size_t i = 0; i < times.size(); ++i) {
         if (!std::isfinite(times[i]) || times[i] < 0.0f)
@@ -36,14 +48,12 @@ Interpolation readInterpolation(const Object& sampler) {
 size_t targetCount(const Document& document, const Object& node) {
     const int mesh = node.index("mesh", document.lists().meshes.size());
     if (mesh == none) return 0;
-    const std::vector<Object> primitives =
-        document.lists().meshes[static_cast<size_t>(mesh)].objects("primitives");
-    return primitives.empty() ? 0 : primitives[0].objects("targets").size();
+    const Object& source = document.lists().meshes[static_cast<size_t>(mesh)];
+    return source.listSize("primitives") == 0 ? 0 : source.objectAt("primitives", 0).listSize("targets");
 }
 
 void readValues(const Document& document, const Object& sampler, Channel& channel) {
-    const int accessor = sampler.index("output", document.lists().accessors.size());
-    if (accessor == none) sampler.fail("has no output");
+    const int accessor = accessorOf(document, sampler, "output");
     const size_t width = channel.value == AnimatedValue::Weights ? 1 : channel.components;
     channel.values = readNumbers(document, accessor, width);
     const size_t keys = channel.interpolation == Interpolation::CubicSpline ? 3 : 1;
@@ -90,7 +100,19 @@ bool readTarget(Document& document, const Object& source, const std::vector<Node
     return true;
 }
 
-Clip readClip(Document& document, const Object& source, const std::vector<Node>& nodes) {
+/// Takes the numbers of a channel from `left`, before they are read.
+void spend(const Document& document, const Object& sampler, uint64_t& left) {
+    const int input = accessorOf(document, sampler, "input");
+    const int output = accessorOf(document, sampler, "output");
+    const uint64_t numbers = accessorCount(document, input) +
+                             accessorCount(document, output) * accessorComponents(document, output);
+    if (numbers > left) sampler.fail("with it the animations have too many times and values");
+    left -= numbers;
+}
+
+/// `numbersLeft`: that this clip and those after it may have.
+Clip readClip(Document& document, const Object& source, const std::vector<Node>& nodes,
+              uint64_t& numbersLeft) {
     Clip clip;
     clip.name = source.text("name", source.place());
     const std::vector<Object> samplers = source.objects("samplers");
@@ -100,6 +122,7 @@ Clip readClip(Document& document, const Object& source, const std::vector<Node>&
         if (sampler == none) entry.fail("has no sampler");
         if (!readTarget(document, entry, nodes, channel)) continue;
         const Object& keys = samplers[static_cast<size_t>(sampler)];
+        spend(document, keys, numbersLeft);
         channel.interpolation = readInterpolation(keys);
         channel.times = readTimes(document, keys);
         readValues(document, keys, channel);
@@ -112,8 +135,9 @@ Clip readClip(Document& document, const Object& source, const std::vector<Node>&
 
 std::vector<Clip> readAnimations(Document& document, const std::vector<Node>& nodes) {
     std::vector<Clip> clips;
+    uint64_t numbersLeft = maxNumbers(document);
     for (const Object& source : document.lists().animations)
-        clips.push_back(readClip(document, source, nodes));
+        clips.push_back(readClip(document, source, nodes, numbersLeft));
     return clips;
 }
 

@@ -171,6 +171,24 @@ TEST_F(BadInput, ManyAccessorsOfNothingAreBoundedTogether) {
                   "vertices or triangles");
 }
 
+TEST_F(BadInput, MorphTargetsAreCountedBeforeTheyAreRead) {
+    GltfFile file = triangle();
+    const int zeros = file.add("accessors", {{"componentType", 5126}, {"count", 4096}, {"type", "VEC3"}});
+    file.primitive()["attributes"]["POSITION"] = zeros;
+    const json target = {{"POSITION", zeros}};
+    file.primitive()["targets"] = json(40'000, target);
+    expectRefused(file.save(folder), "vertices or triangles");
+}
+
+TEST_F(BadInput, MorphWeightsOfManyNodesAreBounded) {
+    GltfFile file = triangle();
+    file.document["meshes"][0]["weights"] = json(100'000, 0);
+    for (int i = 1; i < 200; ++i) file.add("nodes", {{"mesh", 0}});
+    file.document.erase("scenes");
+    file.document.erase("scene");
+    expectRefused(file.save(folder), "too many morph weights");
+}
+
 TEST_F(BadInput, BadGeometry) {
     GltfFile file = triangle();
     file.primitive()["indices"] = file.addAccessor<uint16_t>({0, 1, 3}, "SCALAR", 1, 5123);

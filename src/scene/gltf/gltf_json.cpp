@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/json_float.h"
 
 namespace limpid::scene::gltf {
 namespace {
@@ -63,14 +64,6 @@ std::optional<uint64_t> asWhole(const Json& value) {
     return static_cast<uint64_t>(number);
 }
 
-std::optional<float> asFinite(const Json& value) {
-    if (!value.is_number()) return std::nullopt;
-    const double number = value.get<double>();
-    // Converting a double beyond float's range is undefined behaviour.
-    if (!(std::abs(number) <= 3.4028234e38)) return std::nullopt;
-    return static_cast<float>(number);
-}
-
 }  // namespace
 
 Json parseJson(const std::filesystem::path& file, std::span<const std::byte> text, std::string_view kind) {
@@ -116,7 +109,7 @@ const Json* Object::findArray(const char* key) const {
 float Object::number(const char* key, float absent) const {
     const Json* value = find(key);
     if (!value) return absent;
-    const auto number = asFinite(*value);
+    const auto number = finiteFloat(*value);
     if (!number) fail(key, "is not a finite number");
     return *number;
 }
@@ -168,7 +161,7 @@ void Object::readNumbers(const char* key, std::span<float> values) const {
     if (list->size() != values.size())
         fail(key, fmt::format("has {} numbers, not {}", list->size(), values.size()));
     for (size_t i = 0; i < values.size(); ++i) {
-        const auto number = asFinite((*list)[i]);
+        const auto number = finiteFloat((*list)[i]);
         if (!number) fail(key, fmt::format("element {} is not a finite number", i));
         values[i] = *number;
     }
@@ -254,6 +247,18 @@ std::vector<Object> Object::objects(const char* key) const {
     for (const Json& value : *list)
         values.emplace_back(*file_, value, fmt::format("{}[{}]", prefix, values.size()));
     return values;
+}
+
+size_t Object::listSize(const char* key) const {
+    const Json* list = findArray(key);
+    return list ? list->size() : 0;
+}
+
+Object Object::objectAt(const char* key, size_t index) const {
+    const Json* list = findArray(key);
+    if (!list || index >= list->size()) fail(key, fmt::format("has no element {}", index));
+    return Object(*file_, (*list)[index],
+                  fmt::format("{}{}{}[{}]", place_, place_.empty() ? "" : ".", key, index));
 }
 
 std::vector<std::string> Object::keys() const {

@@ -58,6 +58,10 @@ class Object {
     std::optional<Object> object(const char* key) const;
     std::optional<Object> extension(const char* name) const;
     std::vector<Object> objects(const char* key) const;  ///< a list of objects; empty if absent
+    /// The length of a list, 0 if absent, and one of its objects: for code that runs often, since objects()
+    /// makes all of them.
+    size_t listSize(const char* key) const;
+    Object objectAt(const char* key, size_t index) const;
     std::vector<std::string> keys() const;
 
     /// Throws InputError: "file: place: fault".

@@ -41,11 +41,18 @@ class Loader {
     }
 
   private:
+    struct Primitive {
+        Object source;
+        std::string name;
+        bool isDrawn = true;
+    };
+
     void readMaterials();
     void readRig();
     int defaultMaterial();
     void addNode(size_t node);
-    void addMesh(size_t node, const Object& mesh);
+    void addMesh(size_t node, int mesh);
+    std::vector<Primitive>& primitivesOf(int mesh);
     Pose readPose(size_t node, const Object& mesh);
     const std::vector<mat4>& jointMatrices(int skin);
     void addInstance(size_t node, int mesh, int material, const Pose& pose);
@@ -58,8 +65,10 @@ class Loader {
     TextureLibrary textures_;
     Progress progress_;
     NodeTree tree_;
-    std::map<int, std::vector<mat4>> joints_;  ///< by skin
-    std::vector<bool> animated_;               ///< by node: whether a clip moves it
+    std::map<int, std::vector<mat4>> joints_;           ///< by skin
+    std::vector<bool> animated_;                        ///< by node: whether a clip moves it
+    std::map<int, std::vector<Primitive>> primitives_;  ///< by mesh, since many nodes may have the same one
+    uint64_t weights_ = 0;                              ///< of morph targets, of all nodes
     int defaultMaterial_ = none;
 };
 
@@ -97,9 +106,7 @@ int Loader::defaultMaterial() {
 
 void Loader::addNode(size_t i) {
     const Object& node = lists_.nodes[i];
-    if (const int mesh = node.index("mesh", lists_.meshes.size()); mesh != none) {
-        addMesh(i, lists_.meshes[static_cast<size_t>(mesh)]);
-    }
+    if (const int mesh = node.index("mesh", lists_.meshes.size()); mesh != none) addMesh(i, mesh);
     if (const int camera = node.index("camera", lists_.cameras.size()); camera != none) {
         const Object& source = lists_.cameras[static_cast<size_t>(camera)];
         scene_.cameras.push_back(readCamera(source, tree_.toWorld[i], node.text("name")));
@@ -114,24 +121,41 @@ void Loader::addNode(size_t i) {
     scene_.lights.back().node = static_cast<int>(i);
 }
 
-void Loader::addMesh(size_t i, const Object& mesh) {
-    const Pose pose = readPose(i, mesh);
-    const std::vector<Object> primitives = mesh.objects("primitives");
-    const std::string meshName = mesh.text("name", mesh.place());
-    for (size_t p = 0; p < primitives.size(); ++p) {
-        const std::string name = primitives.size() == 1 ? meshName : fmt::format("{}.{}", meshName, p);
-        const int index = meshes_.add(primitives[p], name, pose);
-        if (index == none) continue;
-        int material = primitives[p].index("material", lists_.materials.size());
-        if (material == none) material = defaultMaterial();
-        addInstance(i, index, material, pose);
+std::vector<Loader::Primitive>& Loader::primitivesOf(int mesh) {
+    const auto [entry, isNew] = primitives_.try_emplace(mesh);
+    if (!isNew) return entry->second;
+    const Object& source = lists_.meshes[static_cast<size_t>(mesh)];
+    const std::string meshName = source.text("name", source.place());
+    for (Object& primitive : source.objects("primitives")) {
+        const size_t p = entry->second.size();
+        entry->second.push_back({std::move(primitive), fmt::format("{}.{}", meshName, p)});
     }
+    if (entry->second.size() == 1) entry->second[0].name = meshName;
+    return entry->second;
+}
+
+void Loader::addMesh(size_t node, int mesh) {
+    const Pose pose = readPose(node, lists_.meshes[static_cast<size_t>(mesh)]);
+    std::vector<Primitive>& primitives = primitivesOf(mesh);
+    for (Primitive& primitive : primitives) {
+        const int index = meshes_.add(primitive.source, primitive.name, pose);
+        primitive.isDrawn = index != none;
+        if (!primitive.isDrawn) continue;
+        int material = primitive.source.index("material", lists_.materials.size());
+        if (material == none) material = defaultMaterial();
+        addInstance(node, index, material, pose);
+    }
+    // Points, lines and what is empty are so in every pose.
+    std::erase_if(primitives, [](const Primitive& primitive) { return !primitive.isDrawn; });
 }
 
 Pose Loader::readPose(size_t nodeIndex, const Object& mesh) {
     const Object& node = lists_.nodes[nodeIndex];
     Pose pose;
     pose.weights = node.has("weights") ? node.numbers("weights") : mesh.numbers("weights");
+    constexpr uint64_t maxWeights = uint64_t{1} << 24;
+    weights_ += pose.weights.size();
+    if (weights_ > maxWeights) node.fail("with it the scene has too many morph weights");
     scene_.rig.nodes[nodeIndex].weights = pose.weights;
     pose.skin = node.index("skin", lists_.skins.size());
     if (pose.skin != none) pose.joints = &jointMatrices(pose.skin);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <numeric>
 #include <utility>
@@ -79,12 +80,13 @@ MeshLibrary::Source MeshLibrary::readSource(const Object& primitive) const {
 static void addPose(const Document& document, const Object& primitive, const Pose& pose,
                     std::vector<int64_t>& key) {
     const size_t accessors = document.lists().accessors.size();
-    const std::vector<Object> targets = primitive.objects("targets");
-    for (size_t t = 0; t < targets.size() && t < pose.weights.size(); ++t) {
+    const size_t targets = std::min(primitive.listSize("targets"), pose.weights.size());
+    for (size_t t = 0; t < targets; ++t) {
         if (pose.weights[t] == 0.0f) continue;
         key.push_back(std::bit_cast<uint32_t>(pose.weights[t]));
+        const Object target = primitive.objectAt("targets", t);
         for (const char* name : {"POSITION", "NORMAL", "TANGENT"})
-            key.push_back(targets[t].index(name, accessors));
+            key.push_back(target.index(name, accessors));
     }
     if (!pose.joints) return;
     const auto attributes = primitive.object("attributes");
@@ -166,14 +168,14 @@ int MeshLibrary::build(const Object& primitive, const Source& source, const std:
     requireFinitePositions(primitive, mesh);
     const Repairs repairs = repairAttributes(mesh);
     if (repairs.any()) document_.warn(primitive.place() + ": " + repairs.describe());
-    if (pose.joints || !primitive.objects("targets").empty()) applyPose(primitive, pose, mesh);
+    if (pose.joints || primitive.listSize("targets") > 0) applyPose(primitive, pose, mesh);
     scene_.meshes.push_back(std::move(mesh));
     return static_cast<int>(scene_.meshes.size() - 1);
 }
 
 void MeshLibrary::applyPose(const Object& primitive, const Pose& pose, Mesh& mesh) {
+    spend(primitive, mesh.positions.size() * primitive.listSize("targets"), 0);
     auto deformation = std::make_shared<const Deformation>(readDeformation(document_, primitive, pose, mesh));
-    spend(primitive, mesh.positions.size() * deformation->targets.size(), 0);
     DeformedVertices posed =
         deform(*deformation, pose.weights,
                pose.joints ? std::span<const mat4>(*pose.joints) : std::span<const mat4>());

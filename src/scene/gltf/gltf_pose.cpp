@@ -83,13 +83,17 @@ Skin readSkin(const Document& document, const Object& source) {
     if (skin.joints.empty()) source.fail("joints", "is empty");
     if (skin.joints.size() > maxJoints) source.fail("joints", "has too many");
     const int accessor = source.index("inverseBindMatrices", document.lists().accessors.size());
-    skin.inverseBind.assign(skin.joints.size(), mat4(1.0f));
-    if (accessor != none) skin.inverseBind = readMat4(document, accessor);
-    if (skin.inverseBind.size() < skin.joints.size()) {
-        source.fail("inverseBindMatrices", fmt::format("has {} matrices for {} joints",
-                                                       skin.inverseBind.size(), skin.joints.size()));
+    if (accessor == none) {
+        skin.inverseBind.assign(skin.joints.size(), mat4(1.0f));
+        return skin;
     }
-    skin.inverseBind.resize(skin.joints.size());
+    const uint64_t count = accessorCount(document, accessor);
+    if (count < skin.joints.size()) {
+        source.fail("inverseBindMatrices",
+                    fmt::format("has {} matrices for {} joints", count, skin.joints.size()));
+    }
+    // There may be more, and many skins may name the same large accessor.
+    skin.inverseBind = readMat4(document, accessor, skin.joints.size());
     for (const mat4& m : skin.inverseBind) {
         if (!isFinite(m[0]) || !isFinite(m[1]) || !isFinite(m[2]) || !isFinite(m[3]))
             source.fail("inverseBindMatrices", "has a value that is not finite");

@@ -161,6 +161,24 @@ TEST_F(GltfTest, SkipsPointsAndLines) {
     expectRefused(file.save(folder), "no triangles");
 }
 
+TEST_F(GltfTest, NodesShareTheDrawnPrimitivesOfAMesh) {
+    GltfFile file = square();
+    json& primitives = file.document["meshes"][0]["primitives"];
+    json points = primitives[0], fan = primitives[0];
+    points["mode"] = 0;
+    fan["mode"] = 6;
+    primitives = {points, primitives[0], points, fan};
+    file.document["nodes"] = json::array({{{"mesh", 0}}, {{"mesh", 0}}});
+    file.document["scenes"][0]["nodes"] = {0, 1};
+    const Scene scene = loadScene(file.save(folder));
+    ASSERT_EQ(scene.instances.size(), 4u);
+    ASSERT_EQ(scene.meshes.size(), 2u);
+    EXPECT_EQ(scene.meshes[0].name, "meshes[0].1");
+    EXPECT_EQ(scene.meshes[1].name, "meshes[0].3");
+    EXPECT_EQ(scene.instances[2].mesh, 0);
+    EXPECT_EQ(scene.instances[3].node, 1);
+}
+
 TEST_F(GltfTest, ReadsInterleavedAttributes) {
     GltfFile file;
     const float data[] = {0, 0, 0, /**/ 9, 9, 1, 0, 0, /**/ 8, 8, 0, 1, 0, /**/ 7, 7};

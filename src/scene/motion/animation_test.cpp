@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 
 #include "base/log.h"
 #include "scene/framing/camera_path.h"
@@ -188,6 +189,45 @@ TEST_F(AnimationFile, RefusesTimesThatAreNone) {
     expectRefused(moving({-1, 0}).save(folder), "negative or not finite");
     expectRefused(moving({0, 2}, {0, 0, 0, nan, 0, 0}).save(folder), "not finite");
     expectRefused(moving({0, 1, 2}).save(folder), "3 times need 9");
+}
+
+TEST_F(AnimationFile, RefusesChannelsThatMultiplyTheirData) {
+    std::vector<float> times(4096);
+    std::iota(times.begin(), times.end(), 0.0f);
+    GltfFile file = moving(times, std::vector<float>(3 * times.size()));
+    json& channels = file.document["animations"][0]["channels"];
+    const json channel = channels[0];
+    channels = json(3, channel);
+    EXPECT_EQ(loadScene(file.save(folder)).rig.clips[0].channels.size(), 3u);
+    channels = json(1500, channel);
+    expectRefused(file.save(folder), "too many times and values");
+}
+
+TEST_F(AnimationFile, ReadsNoMoreMatricesThanJoints) {
+    const auto matrix = [](float x) {
+        return std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 0, 0, 1};
+    };
+    std::vector<float> both = matrix(7), replaced = matrix(2);
+    both.insert(both.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 8, 0, 0, 1});
+    replaced.insert(replaced.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1});
+    GltfFile file = skinned();
+    const int accessor = file.addFloats(both, "MAT4", 16);
+    file.document["skins"][0]["inverseBindMatrices"] = accessor;
+    Scene scene = loadScene(file.save(folder));
+    ASSERT_EQ(scene.rig.skins[0].inverseBind.size(), 1u);
+    EXPECT_EQ(scene.rig.skins[0].inverseBind[0][3].x, 7.0f);
+
+    // A sparse accessor may replace matrices that are not read.
+    const uint16_t where[] = {1, 0};
+    const int indices = file.addView(where, sizeof where);
+    const int values = file.addView(replaced.data(), replaced.size() * sizeof(float));
+    file.document["accessors"][static_cast<size_t>(accessor)]["sparse"] = {
+        {"count", 2},
+        {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+        {"values", {{"bufferView", values}}}};
+    scene = loadScene(file.save(folder));
+    ASSERT_EQ(scene.rig.skins[0].inverseBind.size(), 1u);
+    EXPECT_EQ(scene.rig.skins[0].inverseBind[0][3].x, 3.0f);
 }
 
 TEST_F(AnimationFile, RefusesBrokenReferences) {
