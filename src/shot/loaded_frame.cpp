@@ -1,7 +1,6 @@
 #include "shot/loaded_frame.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <span>
 
@@ -40,11 +39,11 @@ image::LayeredImage layeredImage(const image::ExrDocument& file, bool network) {
 
 /// A file's layers; a picture of another format has R, G and B, or Y.
 image::LayeredImage layersOf(std::span<const std::byte> bytes, const std::filesystem::path& path) {
-    constexpr std::array exrMagic = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
-    if (bytes.size() >= 4 && std::equal(exrMagic.begin(), exrMagic.end(), bytes.begin()))
-        return image::decodeExr(bytes, path);
-    const image::Image picture =
-        image::isPfm(bytes) ? image::decodePfm(bytes, path) : image::readPicture(path).linear;
+    const image::PictureFormat format = image::formatOf(bytes);
+    if (format == image::PictureFormat::Exr) return image::decodeExr(bytes, path);
+    const image::Image picture = format == image::PictureFormat::Pfm
+                                     ? image::decodePfm(bytes, path)
+                                     : image::decodePicture(bytes, path).linear;
     image::LayeredImage layers;
     layers.width = picture.width;
     layers.height = picture.height;
@@ -53,11 +52,11 @@ image::LayeredImage layersOf(std::span<const std::byte> bytes, const std::filesy
 }
 
 image::ExrDocument openDocument(std::vector<std::byte> bytes, const std::filesystem::path& path) {
-    const std::string extension = path.extension().string();
-    const bool picture =
-        extension == ".pfm" || extension == ".hdr" || extension == ".png" || extension == ".jpg";
-    return picture ? image::ExrDocument::of(layersOf(bytes, path), path)
-                   : image::ExrDocument::decode(std::move(bytes), path);
+    const image::PictureFormat format = image::formatOf(bytes);
+    // Most frames are EXR files, so those that are nothing known get the error of such a file.
+    const bool isExr = format == image::PictureFormat::Exr || format == image::PictureFormat::Unknown;
+    return isExr ? image::ExrDocument::decode(std::move(bytes), path)
+                 : image::ExrDocument::of(layersOf(bytes, path), path);
 }
 
 bool has(const image::ExrPart& part, const LayerInfo& layer) {

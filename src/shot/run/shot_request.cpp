@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <set>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/files/file.h"
@@ -16,6 +19,8 @@
 
 namespace limpid::shot {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Returns the request's denoiser, else that of its preset, else svgf.
 const denoise::Denoiser& chosenDenoiser(const ShotRequest& r) {
@@ -191,14 +196,39 @@ void chooseFrames(const ShotRequest& r, ShotJob& job) {
     job.resume = r.resume;
 }
 
+/// A name by which equal files can be found, whether they exist or not.
+fs::path wholePath(const fs::path& path) {
+    const fs::path target = fs::absolute(linkTarget(path));
+    std::error_code fault;
+    const fs::path whole = fs::weakly_canonical(target, fault);
+    return fault ? target.lexically_normal() : whole;
+}
+
+/// Throws UsageError if an output is a file that is read, perhaps for another frame: "a.1%d.exr" of frame 2
+/// is "a.%d.exr" of frame 12.
+void refuseReplacing(const ShotRequest& r, const ShotJob& job) {
+    std::set<fs::path> outputs;
+    for (const int frame : job.frames) outputs.insert(wholePath(outputOf(job, frame)));
+    for (const int frame : job.frames) {
+        const fs::path input = inputOf(job, frame);
+        // isSameFile() also knows hard links.
+        if (outputs.contains(wholePath(input)) || isSameFile(input, outputOf(job, frame)))
+            throw UsageError("'" + r.output + "': the output is the input");
+        for (const auto& [name, pattern] : job.load.files) {
+            const fs::path file = pattern.format(std::max(frame, 0));
+            if (outputs.contains(wholePath(file)) || isSameFile(file, outputOf(job, frame)))
+                throw UsageError(fmt::format("'{}': the output is the file of --file {}", r.output, name));
+        }
+    }
+}
+
 void checkFiles(const ShotRequest& r, const ShotJob& job) {
     if (r.output.empty()) return;
     if (job.input.numbered() != job.output.numbered())
         throw UsageError("'" + r.output + "': the output's name holds a number if the input's does");
     if (r.resume && !isExr(job.output.format(0)))
         throw UsageError("--resume: only EXR files tell what they are of");
-    if (isSameFile(inputOf(job, job.frames.front()), outputOf(job, job.frames.front())))
-        throw UsageError("'" + r.output + "': the output is the input");
+    refuseReplacing(r, job);
 }
 
 }  // namespace
