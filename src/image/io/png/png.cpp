@@ -78,7 +78,7 @@ std::vector<char> encodePng(const ByteImage& image, const fs::path& name) {
     const uint64_t rowBytes = uint64_t{image.width} * image.components;
     const bool right = (image.components == 3 || image.components == 4) && image.width > 0 &&
                        image.height > 0 && image.pixels.size() == rowBytes * image.height;
-    if (!right) throw OutputError(name, "cannot be written: a PNG wants RGB or RGBA, and at least one pixel");
+    if (!right) throw OutputError(name, "cannot be written: a PNG needs RGB or RGBA, and at least one pixel");
     // stb_image_write uses int for sizes.
     if ((rowBytes + 1) * image.height > static_cast<uint64_t>(std::numeric_limits<int>::max())) {
         throw OutputError(

@@ -89,10 +89,9 @@ void checkPng(std::span<const std::byte> bytes, const std::filesystem::path& nam
         constexpr uint32_t ihdr = 0x49484452, iend = 0x49454E44;
         const uint32_t type = bigEndian32(bytes, i + 4);
         if (type == iend) return;
-        // Deflate compresses at most 1032 bytes, of 8 one-bit pixels each, into one.
         if (type == ihdr && length >= 8)
             checkDimensions(name, bigEndian32(bytes, i + 8), bigEndian32(bytes, i + 12), bytes.size(),
-                            8 * 1032);
+                            pngPixelsPerByte, maxStreamedPixels);
         i += length + 12;
     }
     throw InputError(name, "is a PNG file that was cut off");

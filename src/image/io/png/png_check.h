@@ -11,8 +11,8 @@ namespace limpid::image {
 bool looksLikePng(std::span<const std::byte> bytes);
 bool looksLikeJpeg(std::span<const std::byte> bytes);
 
-/// Throws InputError unless all chunks up to IEND exist with correct checksums, and image/io/limits.h accepts
-/// the size.
+/// Throws InputError unless all chunks up to IEND exist with correct checksums, and the picture has at most
+/// maxStreamedPixels; who decodes it whole checks maxPixels.
 void checkPng(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 /// Throws InputError unless the markers lead from start to end of image. Returns true if the decoder must

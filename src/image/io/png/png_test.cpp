@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "image/io/temp_folder.h"
+#include "image/io/texture_decode.h"
 
 namespace limpid::image {
 namespace {
@@ -191,7 +192,25 @@ TEST(Png, MessagesNameTheFault) {
     const std::string large =
         signature + ihdr(30000, 30000, 8, 2) + chunk("IDAT", std::string(400000, 'x')) + chunk("IEND", "");
     EXPECT_NE(faultOf(large).find("30000x30000"), std::string::npos) << faultOf(large);
+    EXPECT_NE(faultOf(large).find("at most 268435456 pixels"), std::string::npos) << faultOf(large);
     EXPECT_NE(faultOf("GIF89a").find("begins with 47 49 46 38"), std::string::npos) << faultOf("GIF89a");
+}
+
+TEST(Png, TexturesMayHaveMorePixelsThanWholePictures) {
+    const auto faultOf = [](uint32_t side) -> std::string {
+        const std::string text =
+            signature + ihdr(side, side, 8, 2) + chunk("IDAT", std::string(400000, 'x')) + chunk("IEND", "");
+        try {
+            // Too little memory for any size, so that nothing is decoded.
+            decodeTexture(test::toByteVector(text), "a.png", {.maxMemory = 1024});
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    EXPECT_NE(faultOf(40000).find("at most 1073741824 pixels"), std::string::npos) << faultOf(40000);
+    EXPECT_EQ(faultOf(30000).find("at most"), std::string::npos) << faultOf(30000);
+    EXPECT_NE(faultOf(30000).find("30000x30000"), std::string::npos) << faultOf(30000);
 }
 
 TEST(Jpeg, DecodesAndRefusesEveryTruncation) {
