@@ -223,5 +223,23 @@ TEST_F(ExrDocumentDamaged, AbsurdSizesAreRefusedWithoutAllocatingThem) {
     EXPECT_LT(peakOfProcess() - before, size_t{200} << 20);
 }
 
+TEST_F(ExrDocumentDamaged, TheFrameOfAPartThatCannotBeReadIsCheckedToo) {
+    constexpr int32_t far = 1 << 27;
+    Imf::Header luma = small("luma", Imf::SCANLINEIMAGE, Imf::NO_COMPRESSION);
+    luma.channels().insert("RY", Imf::Channel(Imf::HALF, 2, 2));
+    const size_t before = peakOfProcess();
+    for (const Imf::Header& first : {small("deep", Imf::DEEPSCANLINE, Imf::ZIPS_COMPRESSION), luma}) {
+        writeParts(path(), {first, small("rows", Imf::SCANLINEIMAGE, Imf::ZIP_COMPRESSION)});
+        const std::string whole = test::get(path());
+        EXPECT_NO_THROW(ExrDocument::decode(test::toByteVector(whole), "whole.exr"));
+        for (const std::vector<int32_t>& window : std::vector<std::vector<int32_t>>{
+                 {0, 0, 16383, 16383}, {0, 0, far, 17}, {0, 0, far, far}, {0, 0, 20, 17}}) {
+            for (const std::string& bytes : patched(whole, "displayWindow", "box2i", window))
+                EXPECT_THROW(ExrDocument::decode(test::toByteVector(bytes), "frame.exr"), InputError);
+        }
+    }
+    EXPECT_LT(peakOfProcess() - before, size_t{200} << 20);
+}
+
 }  // namespace
 }  // namespace limpid::image

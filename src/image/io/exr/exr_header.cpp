@@ -148,7 +148,7 @@ struct Size {
 Size sizeOf(const Imath::Box2i& box, const fs::path& name) {
     constexpr int far = 1 << 28;
     for (const int v : {box.min.x, box.min.y, box.max.x, box.max.y}) {
-        if (v < -far || v > far) throw InputError(name, "has a picture window that lies absurdly far away");
+        if (v < -far || v > far) throw InputError(name, "has a data or display window beyond ±2^28");
     }
     if (box.min.x > box.max.x || box.min.y > box.max.y) throw InputError(name, "has an empty picture window");
     return {static_cast<uint64_t>(box.max.x - box.min.x) + 1,
@@ -175,7 +175,7 @@ int checkChunks(const Imf::Header& header, Size data, uint64_t bytesPerPixel, bo
     uint64_t rows = static_cast<uint64_t>(rowsPerChunk(header.compression()));
     uint64_t columns = data.width;
     if (tiled) {
-        if (!header.hasTileDescription()) throw InputError(name, "is tiled but says not how");
+        if (!header.hasTileDescription()) throw InputError(name, "is tiled but has no tile description");
         rows = header.tileDescription().ySize;
         columns = header.tileDescription().xSize;
         if (rows == 0 || columns == 0 || rows > maxPixels || columns > maxPixels) {
@@ -220,11 +220,22 @@ bool isTiledPart(const Imf::Header& header, int version) {
     return typed && header.hasType() ? Imf::isTiled(header.type()) : Imf::isTiled(version);
 }
 
+/// The display window may be far larger than a cropped render inside it, but must be limited, since it is
+/// allocated.
+void checkDisplay(Size data, Size display, uint64_t bytesPerPixel, size_t fileBytes, const fs::path& name) {
+    checkDimensions(name, display.width, display.height, fileBytes, maxPixels);
+    const uint64_t pixels = display.width * display.height;
+    const bool large = pixels > (uint64_t{1} << 24) || pixels * (bytesPerPixel / 2) > (uint64_t{1} << 26);
+    if (large && pixels / 64 > data.width * data.height) {
+        throw InputError(name, fmt::format("has a frame of {}x{} pixels around {}x{} stored ones",
+                                           display.width, display.height, data.width, data.height));
+    }
+}
+
 ExrFrame checkPart(const Imf::Header& header, int version, size_t fileBytes, const fs::path& name) {
     const bool tiled = isTiledPart(header, version);
     ExrFrame frame{header.dataWindow(), header.displayWindow()};
     const Size data = sizeOf(frame.data, name);
-    const Size display = sizeOf(frame.display, name);
     const uint64_t bytesPerPixel = checkChannels(header, name);
     frame.bytesPerPixel = bytesPerPixel;
     const uint64_t ratio = largestRatio(header.compression());
@@ -234,16 +245,7 @@ ExrFrame checkPart(const Imf::Header& header, int version, size_t fileBytes, con
                                            data.height, fileBytes));
     }
     frame.rowsPerChunk = checkChunks(header, data, bytesPerPixel, tiled, fileBytes, name);
-
-    // The display window may be far larger than a cropped render inside it, but must be limited, since it is
-    // allocated.
-    checkDimensions(name, display.width, display.height, fileBytes, maxPixels);
-    const uint64_t pixels = display.width * display.height;
-    const bool large = pixels > (uint64_t{1} << 24) || pixels * (bytesPerPixel / 2) > (uint64_t{1} << 26);
-    if (large && pixels / 64 > data.width * data.height) {
-        throw InputError(name, fmt::format("has a frame of {}x{} pixels around {}x{} stored ones",
-                                           display.width, display.height, data.width, data.height));
-    }
+    checkDisplay(data, sizeOf(frame.display, name), bytesPerPixel, fileBytes, name);
     return frame;
 }
 
@@ -327,9 +329,13 @@ std::vector<ExrPartHeader> checkExrParts(std::span<const std::byte> bytes, const
     for (uint64_t i = 0; i < count; ++i) {
         ExrPartHeader part;
         part.header.readFrom(stream, version);
-        // OpenEXR compares these with others or computes with them.
-        sizeOf(part.header.dataWindow(), name);
-        sizeOf(part.header.displayWindow(), name);
+        // OpenEXR computes with the windows, and ExrDocument::width() is that of the first part, even if its
+        // pixels cannot be read.
+        constexpr uint64_t oneFloat = 4;
+        checkDisplay(sizeOf(part.header.dataWindow(), name), sizeOf(part.header.displayWindow(), name),
+                     oneFloat, bytes.size(), name);
+        if (!parts.empty() && part.header.displayWindow() != parts.front().header.displayWindow())
+            throw InputError(name, "has parts with different display windows");
         removeMisleading(part.header, version, count == 1);
         part.unreadable = whyUnreadable(part.header, version);
         if (part.unreadable.empty()) part.frame = checkPart(part.header, version, bytes.size(), name);

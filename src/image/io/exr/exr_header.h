@@ -58,7 +58,8 @@ struct ExrPartHeader {
     std::string unreadable;
 };
 
-/// Like checkExrHeaders(), but for all parts: those that cannot be read are no error.
+/// Like checkExrHeaders(), but for all parts: those that cannot be read are no error. All have the same
+/// display window, which is checked even if no part can be read.
 std::vector<ExrPartHeader> checkExrParts(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 /// Runs `action`; what OpenEXR throws becomes an InputError of the file.
