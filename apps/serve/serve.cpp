@@ -15,9 +15,9 @@ void serve(studio::Session& session, const ServeSettings& settings, const std::f
     const bool tls = !settings.certificate.empty();
     if (!isLoopback(settings.bind) && !tls)
         log::warn(
-            "{} can be reached from other machines, and without TLS everybody on the way can read and change "
-            "what "
-            "is sent, the token too; use --certificate and --key, or the default address and 'ssh -L'",
+            "{} can be reached from other machines, and without TLS, anyone on the network path can read "
+            "and change the traffic, including the token; use --certificate and --key, or the default "
+            "address and 'ssh -L'",
             settings.bind);
     const SceneFiles files(settings.files);
     const std::string token = makeToken();

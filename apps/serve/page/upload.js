@@ -5,7 +5,8 @@ import {say} from './status.js';
 
 const types = '.glb,.gltf,.obj,.hdr,.exr';
 const reasons = {403: 'the program was started without --uploads', 413: 'the file is too large',
-                 400: 'scenes and environments have other names', 503: 'two other files are on their way'};
+                 400: 'scenes and environments have other names', 503: 'two other files are on their way',
+                 507: 'the program cannot store it'};
 
 /// What a name may have; the ending stays.
 const allowed = name => name.replace(/[^A-Za-z0-9._-]/g, '_');

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-
-#include "base/error.h"
+#include <system_error>
 
 namespace limpid::serve {
 namespace {
@@ -26,8 +25,13 @@ bool isUploadName(const std::string& name) {
 
 Upload::Upload(fs::path folder, const std::string& name, uint64_t bytes)
     : folder_(std::move(folder)), file_(folder_ / name), left_(bytes) {
-    fs::create_directory(folder_);
-    stream_.open(file_, std::ios::binary);
+    std::error_code fault;
+    if (fs::create_directory(folder_, fault)) stream_.open(file_, std::ios::binary);
+    if (stream_.is_open()) return;
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+    throw StorageError("an upload cannot be stored in " + folder_.string() +
+                       (fault ? ": " + fault.message() : std::string()));
 }
 
 Upload::~Upload() {
@@ -53,8 +57,10 @@ std::unique_ptr<Upload> Uploads::begin(const std::string& name, uint64_t bytes) 
     if (!isUploadName(name) || bytes == 0 || bytes > maxBytes_) return nullptr;
     if (root_.empty()) {
         // Only its user can look into it.
-        std::string pattern = (fs::temp_directory_path() / "limpid-uploads.XXXXXX").string();
-        if (!::mkdtemp(pattern.data())) throw Error("there is no folder for uploads");
+        std::error_code fault;
+        std::string pattern = (fs::temp_directory_path(fault) / "limpid-uploads.XXXXXX").string();
+        if (fault || !::mkdtemp(pattern.data()))
+            throw StorageError("there is no folder for temporary files, which uploads need");
         root_ = pattern;
     }
     return std::make_unique<Upload>(root_ / std::to_string(++ever_), name, bytes);
@@ -62,7 +68,7 @@ std::unique_ptr<Upload> Uploads::begin(const std::string& name, uint64_t bytes) 
 
 fs::path Uploads::keep(Upload& upload) {
     upload.stream_.close();
-    if (!upload.stream_.good()) throw Error("the upload cannot be written");
+    if (!upload.stream_.good()) throw StorageError("an upload cannot be written: the disk may be full");
     upload.kept_ = true;
     kept_.push_back(upload.folder_);
     if (kept_.size() > maxKept) {

@@ -10,11 +10,19 @@
 #include <span>
 #include <string>
 
+#include "base/error.h"
+
 namespace limpid::serve {
+
+/// There is no room for a file, or its folder cannot be made.
+struct StorageError : Error {
+    using Error::Error;
+};
 
 /// A file that is being received. Removed with its folder unless it is finished.
 class Upload {
   public:
+    /// Makes the folder and an empty file. Throws StorageError if it cannot.
     Upload(std::filesystem::path folder, const std::string& name, uint64_t bytes);
     ~Upload();
     Upload(const Upload&) = delete;
@@ -43,9 +51,9 @@ class Uploads {
 
     uint64_t maxBytes() const { return maxBytes_; }
     /// Null if files of this name are not accepted. Each is alone in its folder, and keeps its name: a scene
-    /// is called after it. Throws Error if there is no temporary folder.
+    /// is called after it. Throws StorageError if it cannot be stored.
     std::unique_ptr<Upload> begin(const std::string& name, uint64_t bytes);
-    /// Keeps the file; the oldest of the kept ones goes. Throws Error if it cannot be written.
+    /// Keeps the file; the oldest of the kept ones goes. Throws StorageError if it cannot be written.
     std::filesystem::path keep(Upload& upload);
 
   private:

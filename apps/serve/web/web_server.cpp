@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "serve/session/client.h"
 #include "serve/stream/streamer.h"
 #include "serve/web/access.h"
@@ -81,6 +82,33 @@ Bytes bytesOf(std::string_view text) {
     return std::make_shared<const std::vector<std::byte>>(begin, begin + text.size());
 }
 
+struct DestroyContext {
+    void operator()(lws_context* context) const { lws_context_destroy(context); }
+};
+
+/// Runs a callback of libwebsockets. Its functions are C, which no exception may pass: one is logged, a
+/// request without an answer gets one, and the connection is closed. What cannot even be logged ends the
+/// program.
+template <typename Action>
+int guarded(lws* wsi, lws_callback_reasons reason, const Action& action) noexcept {
+    unsigned status = HTTP_STATUS_INTERNAL_SERVER_ERROR;
+    try {
+        return action();
+    } catch (const StorageError& fault) {
+        constexpr unsigned insufficientStorage = 507;
+        status = insufficientStorage;
+        log::error("{}", fault.what());
+    } catch (const std::exception& fault) {
+        log::error("a connection was closed: {}", fault.what());
+    } catch (...) {
+        log::error("a connection was closed after an unknown fault");
+    }
+    if (reason == LWS_CALLBACK_EVENT_WAIT_CANCELLED) return 0;  // belongs to no connection
+    if (reason == LWS_CALLBACK_HTTP || reason == LWS_CALLBACK_HTTP_BODY_COMPLETION)
+        lws_return_http_status(wsi, status, nullptr);
+    return -1;
+}
+
 /// An answer that is being sent.
 struct Answer {
     Bytes body;
@@ -95,8 +123,6 @@ struct WebServer::Impl {
     const SceneFiles& files;
     std::string token;
     bool tls;
-    lws_context* context = nullptr;
-    std::map<lws*, std::unique_ptr<Client>> clients;
     std::map<lws*, Answer> answers;
     std::map<lws*, Clock::time_point> waiting;  ///< for /picture.png, until then
     Uploads uploads;
@@ -106,8 +132,11 @@ struct WebServer::Impl {
     bool stillAsked = false;
     std::array<lws_protocols, 3> protocols{};
     lws_retry_bo_t idle{};
-    std::unique_ptr<Streamer> streamer;  ///< the last member: its thread uses the others
     uint64_t listener = 0;
+    // Destroyed in the reverse order: closing the connections removes clients, which use the streamer.
+    std::unique_ptr<Streamer> streamer;
+    std::map<lws*, std::unique_ptr<Client>> clients;
+    std::unique_ptr<lws_context, DestroyContext> context;
 
     Impl(studio::Session& s, const ServeSettings& with, const SceneFiles& f, std::string t)
         : session(s),
@@ -116,9 +145,16 @@ struct WebServer::Impl {
           token(std::move(t)),
           tls(!with.certificate.empty()),
           uploads(with.uploads) {}
+    /// First ends what calls wake() from other threads.
+    ~Impl() {
+        if (listener != 0) session.removeListener(listener);
+        if (streamer) streamer->stop();
+    }
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
 
     static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
-    void wake() const { lws_cancel_service(context); }
+    void wake() const { lws_cancel_service(context.get()); }
 
     bool isAllowed(lws* wsi, bool withOrigin) const {
         const std::string host = headerOf(wsi, WSI_TOKEN_HOST);
@@ -141,6 +177,8 @@ struct WebServer::Impl {
     int endUpload(lws* wsi);
     int sendToClient(lws* wsi, Client& client);
     void afterWake();
+    int handleHttp(lws* wsi, lws_callback_reasons reason, void* in, size_t length);
+    int handleSocket(lws* wsi, lws_callback_reasons reason, void* in, size_t length);
     static int onHttp(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length);
     static int onSocket(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length);
 };
@@ -307,27 +345,27 @@ int WebServer::Impl::sendToClient(lws* wsi, Client& client) {
     return 0;
 }
 
-int WebServer::Impl::onHttp(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length) {
+int WebServer::Impl::handleHttp(lws* wsi, lws_callback_reasons reason, void* in, size_t length) {
     switch (reason) {
         case LWS_CALLBACK_HTTP:
-            return of(wsi).http(wsi, std::string(static_cast<const char*>(in), length));
+            return http(wsi, std::string(static_cast<const char*>(in), length));
         case LWS_CALLBACK_HTTP_WRITEABLE:
-            return of(wsi).sendAnswer(wsi);
+            return sendAnswer(wsi);
         case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
-            return of(wsi).confirmUpgrade(wsi);
+            return confirmUpgrade(wsi);
         case LWS_CALLBACK_CLOSED_HTTP:
         case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
-            of(wsi).answers.erase(wsi);
-            of(wsi).waiting.erase(wsi);
-            of(wsi).uploading.erase(wsi);
+            answers.erase(wsi);
+            waiting.erase(wsi);
+            uploading.erase(wsi);
             return 0;
         case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
-            of(wsi).afterWake();
+            afterWake();
             return 0;
         case LWS_CALLBACK_HTTP_BODY:
-            return of(wsi).receiveUpload(wsi, {static_cast<const std::byte*>(in), length});
+            return receiveUpload(wsi, {static_cast<const std::byte*>(in), length});
         case LWS_CALLBACK_HTTP_BODY_COMPLETION:
-            return of(wsi).endUpload(wsi);
+            return endUpload(wsi);
         // The library's own handling would answer to more than this server has.
         case LWS_CALLBACK_HTTP_FILE_COMPLETION:
             return -1;
@@ -336,21 +374,19 @@ int WebServer::Impl::onHttp(lws* wsi, lws_callback_reasons reason, void*, void* 
     }
 }
 
-int WebServer::Impl::onSocket(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length) {
-    auto& clients = of(wsi).clients;
+int WebServer::Impl::handleSocket(lws* wsi, lws_callback_reasons reason, void* in, size_t length) {
     const auto found = clients.find(wsi);
     Client* const client = found == clients.end() ? nullptr : found->second.get();
     switch (reason) {
         case LWS_CALLBACK_ESTABLISHED:
-            clients[wsi] = std::make_unique<Client>(of(wsi).session, *of(wsi).streamer, of(wsi).files,
-                                                    of(wsi).uploads.maxBytes());
+            clients[wsi] = std::make_unique<Client>(session, *streamer, files, uploads.maxBytes());
             lws_callback_on_writable(wsi);
             return 0;
         case LWS_CALLBACK_CLOSED:
             if (client) clients.erase(found);
             return 0;
         case LWS_CALLBACK_SERVER_WRITEABLE:
-            return client ? of(wsi).sendToClient(wsi, *client) : -1;
+            return client ? sendToClient(wsi, *client) : -1;
         case LWS_CALLBACK_RECEIVE: {
             const bool last = lws_is_final_fragment(wsi) && lws_remaining_packet_payload(wsi) == 0;
             if (client && !lws_frame_is_binary(wsi) &&
@@ -364,6 +400,14 @@ int WebServer::Impl::onSocket(lws* wsi, lws_callback_reasons reason, void*, void
         default:
             return 0;
     }
+}
+
+int WebServer::Impl::onHttp(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length) {
+    return guarded(wsi, reason, [&] { return of(wsi).handleHttp(wsi, reason, in, length); });
+}
+
+int WebServer::Impl::onSocket(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length) {
+    return guarded(wsi, reason, [&] { return of(wsi).handleSocket(wsi, reason, in, length); });
 }
 
 WebServer::WebServer(studio::Session& session, const ServeSettings& settings, const SceneFiles& files,
@@ -394,7 +438,7 @@ WebServer::WebServer(studio::Session& session, const ServeSettings& settings, co
         info.ssl_private_key_filepath = key.c_str();
         info.alpn = "http/1.1";
     }
-    self.context = lws_create_context(&info);
+    self.context.reset(lws_create_context(&info));
     if (!self.context)
         throw Error(fmt::format("{}:{} cannot be served: the address is in use or not this machine's{}",
                                 settings.bind, settings.port,
@@ -404,15 +448,10 @@ WebServer::WebServer(studio::Session& session, const ServeSettings& settings, co
     self.listener = session.addListener([&self] { self.wake(); });
 }
 
-WebServer::~WebServer() {
-    impl_->session.removeListener(impl_->listener);
-    impl_->streamer->stop();
-    lws_context_destroy(impl_->context);
-    impl_->clients.clear();  // before the streamer, which they use
-}
+WebServer::~WebServer() = default;
 
 int WebServer::port() const {
-    return lws_get_vhost_listen_port(lws_get_vhost_by_name(impl_->context, "default"));
+    return lws_get_vhost_listen_port(lws_get_vhost_by_name(impl_->context.get(), "default"));
 }
 
 void WebServer::run(const std::function<bool()>& stop) {
@@ -426,11 +465,12 @@ void WebServer::run(const std::function<bool()>& stop) {
             lws_cancel_service(self->context);
         }
     } timer;
-    timer.context = impl_->context;
-    lws_sul_schedule(impl_->context, 0, &timer.list, &Timer::ring, tick);
-    while (!stop() && lws_service(impl_->context, 0) >= 0) {
+    lws_context* const context = impl_->context.get();
+    timer.context = context;
+    lws_sul_schedule(context, 0, &timer.list, &Timer::ring, tick);
+    while (!stop() && lws_service(context, 0) >= 0) {
     }
-    lws_sul_schedule(impl_->context, 0, &timer.list, nullptr, LWS_SET_TIMER_USEC_CANCEL);
+    lws_sul_schedule(context, 0, &timer.list, nullptr, LWS_SET_TIMER_USEC_CANCEL);
 }
 
 }  // namespace limpid::serve

@@ -170,6 +170,12 @@ class WebServerTest : public testing::Test {
         return answerTo(fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", path, host));
     }
     static std::string get(const std::string& path) { return get(path, host()); }
+    static std::string post(const std::string& query, const std::string& body, const std::string& more = {}) {
+        return answerTo(
+            fmt::format("POST /upload?{} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n{}Content-Length: {}"
+                        "\r\n\r\n{}",
+                        query, host(), more, body.size(), body));
+    }
     static void expectAlive() { EXPECT_THAT(get("/?token=" + token()), StartsWith("HTTP/1.1 200")); }
 };
 std::unique_ptr<WebServerTest::Shared> WebServerTest::shared;
@@ -246,12 +252,6 @@ TEST_F(WebServerTest, OpensScenesOfItsFolderOnly) {
 }
 
 TEST_F(WebServerTest, OpensUploadsAsUntrustedFiles) {
-    const auto post = [](const std::string& query, const std::string& body, const std::string& more = {}) {
-        return answerTo(
-            fmt::format("POST /upload?{} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n{}Content-Length: {}"
-                        "\r\n\r\n{}",
-                        query, host(), more, body.size(), body));
-    };
     const size_t before = session().asked().size();
     const std::string good = "token=" + token() + "&name=room.glb", body(900, 'x');
     EXPECT_THAT(post("name=room.glb", body), StartsWith("HTTP/1.1 403"));
@@ -270,6 +270,18 @@ TEST_F(WebServerTest, OpensUploadsAsUntrustedFiles) {
     for (int i = 0; i < 4; ++i) EXPECT_THAT(post(good, body), StartsWith("HTTP/1.1 200"));
     EXPECT_FALSE(fs::exists(asked.back().file)) << "the oldest of five is removed";
     EXPECT_EQ(Viewer(port(), token()).text("hello").at("uploads"), 1000);
+}
+
+TEST_F(WebServerTest, SurvivesAnUploadThatCannotBeStored) {
+    const std::string query = "token=" + token() + "&name=room.glb", body(900, 'x');
+    ASSERT_THAT(post(query, body), StartsWith("HTTP/1.1 200"));
+    const fs::path folder = fs::path(session().asked().back().file).parent_path().parent_path();
+    const fs::path away = folder.string() + ".away";
+    fs::rename(folder, away);
+    EXPECT_THAT(post(query, body), StartsWith("HTTP/1.1 507"));
+    expectAlive();
+    fs::rename(away, folder);
+    EXPECT_THAT(post(query, body), StartsWith("HTTP/1.1 200"));
 }
 
 TEST_F(WebServerTest, RefusesWhatIsNoMessage) {
