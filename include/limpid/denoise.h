@@ -89,7 +89,7 @@ typedef struct limpid_device_desc {
 } limpid_device_desc;
 
 /* Opens a Vulkan device. `desc` may be NULL. Returns LIMPID_ERROR_UNSUPPORTED if no device is suitable; the message
- * lists the available ones. */
+ * lists the available ones. `*device` is NULL on failure. */
 LIMPID_API limpid_result limpid_device_create(const limpid_device_desc* desc, limpid_device** device);
 /* Destroy all denoisers on the device first. NULL is ignored. */
 LIMPID_API void limpid_device_destroy(limpid_device* device);
@@ -131,7 +131,7 @@ typedef enum limpid_input {
     LIMPID_INPUT_DEPTH = 6,             /* limpid_depth. Required. */
     LIMPID_INPUT_MOTION = 7,            /* limpid_motion_unit etc. If missing, only the camera moves. */
     LIMPID_INPUT_PREVIOUS_NORMAL = 8,   /* like NORMAL, for the same surface point in the previous frame */
-    LIMPID_INPUT_REFLECTION_MOTION = 9, /* like MOTION, for the reflection in a flat mirror */
+    LIMPID_INPUT_REFLECTION_MOTION = 9, /* like MOTION, for the image that the surface reflects */
     LIMPID_INPUT_ID = 10,               /* r: a number for each object (Vulkan: unsigned integers) */
     /* r: roughness of the specular lobe, 0 to 1: the square root of the microfacet distribution's alpha; negative or
      * NaN: unknown. Keeps patterns of gloss and glossy bumps sharp. */
@@ -195,7 +195,7 @@ typedef enum limpid_clip_y {
 typedef struct limpid_denoiser_desc {
     size_t size;
     limpid_method method;
-    uint32_t width, height; /* pixels of all images */
+    uint32_t width, height; /* pixels of all images, 1 to 32768 */
     /* 0 or 1: RADIANCE is all light that is filtered. 2: RADIANCE is diffuse and SPECULAR specular light; takes twice
      * the time. */
     uint32_t signals;
@@ -227,7 +227,7 @@ typedef struct limpid_camera {
 } limpid_camera;
 
 /* Creates a denoiser, and compiles its pipelines on several threads if `device` does not have them yet. Its images are
- * created for the first frame; limpid_denoiser_memory() returns their size. */
+ * created for the first frame; limpid_denoiser_memory() returns their size. `*denoiser` is NULL on failure. */
 LIMPID_API limpid_result limpid_denoiser_create(limpid_device* device, const limpid_denoiser_desc* desc,
                                                 limpid_denoiser** denoiser);
 /* NULL is ignored. Everything it has recorded must be finished on the device. */
@@ -258,12 +258,12 @@ typedef struct limpid_parameter {
     const char* help; /* one line: what it does, and the effect of a larger value */
 } limpid_parameter;
 
-/* Returns the parameters of a method by index, from 0 on; LIMPID_ERROR_INVALID_ARGUMENT beyond the last. Strings are
- * valid for ever. */
+/* Returns the parameters of a method by index, from 0 on; LIMPID_ERROR_INVALID_ARGUMENT beyond the last. Strings
+ * have static storage: they are valid until the program ends. */
 LIMPID_API limpid_result limpid_method_parameter(limpid_method method, uint32_t index, limpid_parameter* parameter);
 
 /* Takes effect in the next frame. Bools are 0 and 1. Returns LIMPID_ERROR_INVALID_ARGUMENT if there is no such
- * parameter or the value is outside its range. */
+ * parameter, the value is outside its range, or a bool or int is given a fraction. */
 LIMPID_API limpid_result limpid_denoiser_set(limpid_denoiser* denoiser, const char* name, double value);
 LIMPID_API limpid_result limpid_denoiser_get(const limpid_denoiser* denoiser, const char* name, double* value);
 
@@ -291,7 +291,12 @@ typedef struct limpid_host_frame {
     int32_t reset; /* not 0: a cut; history starts with this frame */
 } limpid_host_frame;
 
-/* Denoises one frame and waits for it. Call it for frames in order. Not available on devices of denoise_vulkan.h. */
+/* Denoises one frame and waits for it. Call it for frames in order. Not available on devices of denoise_vulkan.h.
+ * LIMPID_ERROR_INVALID_ARGUMENT: an input is missing, an image has a wrong number of components, the method does not
+ * have a requested output, or a matrix of the camera is not finite or singular. LIMPID_ERROR_OUT_OF_MEMORY,
+ * LIMPID_ERROR_DEVICE_LOST. After INVALID_ARGUMENT the outputs are unchanged, and history does not advance: the next
+ * frame follows the last one that succeeded. Only a cut (`reset`) may stay in effect. After other errors the outputs
+ * are undefined; call limpid_denoiser_reset() before you go on. */
 LIMPID_API limpid_result limpid_denoise_host(limpid_denoiser* denoiser, const limpid_host_frame* frame);
 
 typedef struct limpid_timing {

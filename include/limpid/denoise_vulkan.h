@@ -98,7 +98,8 @@ LIMPID_API limpid_result limpid_record(limpid_denoiser* denoiser, VkCommandBuffe
 /* Records all passes for a few pixels of the frame's inputs, and clears the denoiser's images if no frame has used
  * them yet. For drivers that compile at the first dispatch and give memory when it is first written (Mesa's lavapipe),
  * so that the first frame is not slower than later ones. Optional. Outputs are not written, and history stays as it
- * is. */
+ * is. Each call takes a little memory that limpid_denoiser_destroy() frees, since it may still be executing: call it
+ * once, and again after a change of size, but not for every frame. */
 LIMPID_API limpid_result limpid_warm_up(limpid_denoiser* denoiser, VkCommandBuffer commands,
                                         const limpid_vulkan_frame* frame);
 

@@ -53,12 +53,14 @@ LIMPID_API void limpid_network_destroy(limpid_network* network);
 
 /* The device, as its driver calls it. Valid as long as the network. */
 LIMPID_API const char* limpid_network_device_name(const limpid_network* network);
-/* How it is computed: "half precision, cooperative matrices", "single precision, oneDNN". Lives for ever. */
+/* How it is computed: "half precision, cooperative matrices", "single precision, oneDNN". Static storage: valid until
+ * the program ends. */
 LIMPID_API const char* limpid_network_precision(const limpid_network* network);
 
 /* ------------------------------------------------------------- parameters */
 
-/* From 0 on. LIMPID_ERROR_INVALID_ARGUMENT beyond the last. Strings live for ever. */
+/* From 0 on. LIMPID_ERROR_INVALID_ARGUMENT beyond the last. Strings have static storage: they are valid until the
+ * program ends. */
 LIMPID_API limpid_result limpid_network_parameter(uint32_t index, limpid_parameter* parameter);
 
 /* As limpid_denoiser_set() and limpid_denoiser_get(). kpcn.half and kpcn.cis565 load the weights anew; if that fails,

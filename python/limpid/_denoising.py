@@ -141,7 +141,7 @@ class Denoiser:
         for name, value in (("width", width), ("height", height)):
             _check_side(name, value)
         if signals not in (1, 2):
-            raise ValueError(f"signals: there are 1 or 2, not {signals!r}")
+            raise ValueError(f"signals: must be 1 or 2, not {signals!r}")
         if not far_depth > 0.0:
             raise ValueError(f"far_depth: {far_depth!r} is not above 0")
         choose = _arrays.choose
@@ -293,7 +293,7 @@ class Denoiser:
 
     def set(self, name, value):
         """Sets a parameter from the next frame on. Raises limpid.Error if no parameter has this name, or if the value
-        is outside its range."""
+        is outside its range or a fraction for an int or a bool."""
         self._handle.set(name, float(value))
 
     def get(self, name):

@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -112,7 +113,7 @@ limpid_camera cameraOf(const Matrices& matrices, std::pair<float, float> jitter)
 class Denoiser {
   public:
     Denoiser(std::shared_ptr<Device> device, const limpid_denoiser_desc& desc)
-        : device_(std::move(device)), width_(desc.width), height_(desc.height) {
+        : device_(std::move(device)), size_(Size{desc.width, desc.height}) {
         limpid_denoiser* denoiser = nullptr;
         check(limpid_denoiser_create(device_->handle(), &desc, &denoiser));
         handle_.reset(denoiser);
@@ -123,24 +124,27 @@ class Denoiser {
     py::list denoise(const std::vector<std::pair<uint32_t, Array>>& inputs,
                      const std::vector<uint32_t>& outputs, const Matrices& camera,
                      std::pair<float, float> jitter, bool reset) {
+        const Size size = size_;
         limpid_host_frame frame{};
         frame.size = sizeof frame;
         frame.reset = reset ? 1 : 0;
         frame.camera = cameraOf(camera, jitter);
         for (const auto& [input, array] : inputs) {
             if (input >= LIMPID_INPUT_MAX) throw std::invalid_argument("there is no such input");
-            checkReadable(array, width_, height_);
+            checkReadable(array, size.width, size.height);
             frame.inputs[input] = hostImage<limpid_host_image>(array.data(), array);
         }
         py::list results;
         for (const uint32_t output : outputs) {
             if (output >= LIMPID_OUTPUT_MAX) throw std::invalid_argument("there is no such output");
-            Array result({py::ssize_t{height_}, py::ssize_t{width_}, py::ssize_t{3}});
+            Array result({py::ssize_t{size.height}, py::ssize_t{size.width}, py::ssize_t{3}});
             frame.outputs[output] = hostImage<limpid_host_output>(result.mutable_data(), result);
             results.append(std::move(result));
         }
         const py::gil_scoped_release release;
         const std::lock_guard lock(mutex_);
+        // The arrays have the size from before: the library would read and write beyond their ends.
+        if (size_ != size) throw std::invalid_argument("another thread resized the denoiser meanwhile");
         check(limpid_denoise_host(handle_.get(), &frame));
         return results;
     }
@@ -148,8 +152,7 @@ class Denoiser {
     void resize(uint32_t width, uint32_t height) {
         const std::lock_guard lock(mutex_);
         check(limpid_denoiser_resize(handle_.get(), width, height));
-        width_ = width;
-        height_ = height;
+        size_ = Size{width, height};
     }
     void reset() {
         const std::lock_guard lock(mutex_);
@@ -177,16 +180,20 @@ class Denoiser {
         return result;
     }
 
-    uint32_t width() const { return width_; }
-    uint32_t height() const { return height_; }
+    uint32_t width() const { return size_.load().width; }
+    uint32_t height() const { return size_.load().height; }
 
   private:
+    struct Size {
+        uint32_t width, height;
+        bool operator==(const Size&) const = default;
+    };
     struct Destroy {
         void operator()(limpid_denoiser* denoiser) const { limpid_denoiser_destroy(denoiser); }
     };
     std::shared_ptr<Device> device_;
-    uint32_t width_, height_;
-    std::mutex mutex_;  ///< one thread at a time may use a denoiser, and the GIL is released meanwhile
+    std::atomic<Size> size_;  ///< changes only under the mutex, but is read without it
+    std::mutex mutex_;        ///< one thread at a time may use a denoiser, and the GIL is released meanwhile
     std::unique_ptr<limpid_denoiser, Destroy> handle_;
 };
 

@@ -215,7 +215,8 @@ class ParameterTest(unittest.TestCase):
 
     def test_wrong_names_and_values_are_refused(self):
         denoiser = limpid.Denoiser(8, 8, device=device())
-        for name, value in (("svgf.nothing", 1.0), ("svgf.alpha", 17.0), ("svgf.alpha", float("nan"))):
+        for name, value in (("svgf.nothing", 1.0), ("svgf.alpha", 17.0), ("svgf.alpha", float("nan")),
+                            ("svgf.levels", 2.5), ("svgf.wide", 0.5)):
             with self.assertRaises(limpid.Error) as caught:
                 denoiser.set(name, value)
             self.assertEqual(caught.exception.code, "invalid_argument")
@@ -346,6 +347,28 @@ class DenoiseTest(unittest.TestCase):
         self.assertEqual(len(results), 18)
         for result in results:
             np.testing.assert_array_equal(result, expected)
+
+    def test_another_thread_may_resize(self):
+        denoiser = limpid.Denoiser(WIDTH, HEIGHT, "temporal", device=device())
+        small, large = {name: value[:4, :8] for name, value in still().items()}, still()
+        done = threading.Event()
+
+        def resize():
+            while not done.wait(0.001):
+                denoiser.resize(8, 4)
+                denoiser.resize(WIDTH, HEIGHT)
+
+        thread = threading.Thread(target=resize)
+        thread.start()
+        try:
+            for inputs in 20 * [small, large]:
+                try:
+                    self.assertEqual(denoiser.denoise(**inputs).shape, inputs["radiance"].shape)
+                except ValueError:
+                    pass  # the denoiser had the other size
+        finally:
+            done.set()
+            thread.join()
 
     def test_other_threads_run_meanwhile(self):
         # Counts while the device works; if the GIL were held, it would barely advance.

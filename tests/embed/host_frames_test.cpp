@@ -183,6 +183,11 @@ TEST_F(HostFramesTest, EveryMethodRunsAndListsItsParameters) {
                 << limpid_last_error();
             EXPECT_EQ(limpid_denoiser_set(denoiser_, p.name, p.maximum * 2 + 1),
                       LIMPID_ERROR_INVALID_ARGUMENT);
+            if (p.type != LIMPID_PARAMETER_FLOAT) {
+                EXPECT_EQ(limpid_denoiser_set(denoiser_, p.name, p.minimum + 0.5),
+                          LIMPID_ERROR_INVALID_ARGUMENT)
+                    << p.name;
+            }
             EXPECT_GT(std::strlen(p.help), 0u);
         }
         EXPECT_GT(count, 5u);
@@ -217,6 +222,29 @@ TEST_F(HostFramesTest, SaysWhatIsMissing) {
     EXPECT_THAT(limpid_last_error(), HasSubstr("svgf.nothing"));
     given = hostFrame(frame, depths, ids, result);
     EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+}
+
+TEST_F(HostFramesTest, ARefusedOutputChangesNothing) {
+    create(LIMPID_METHOD_TEMPORAL);
+    const SyntheticScene scene({});
+    std::vector<float> depths, ids, result, expected;
+    for (const bool refuses : {false, true}) {
+        const HostFrame first = embeddable(scene, 0), second = embeddable(scene, 1);
+        limpid_host_frame given = hostFrame(first, depths, ids, result);
+        given.reset = 1;
+        ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+        given = hostFrame(second, depths, ids, result);
+        if (refuses) {
+            given.outputs[LIMPID_OUTPUT_COLOR].components = 2;
+            EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT);
+            EXPECT_THAT(limpid_last_error(), HasSubstr("'color' has 2 components"));
+            EXPECT_EQ(result, std::vector<float>(result.size(), -1.0f));
+            given.outputs[LIMPID_OUTPUT_COLOR].components = 4;
+        }
+        ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+        if (!refuses) expected = result;
+    }
+    EXPECT_EQ(result, expected);
 }
 
 TEST_F(HostFramesTest, RefusesImpossibleDescriptions) {

@@ -37,6 +37,19 @@ IngestImages uploadInputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& de
     return images;
 }
 
+constexpr const char* outputNames[] = {"color", "radiance", "specular"};
+
+/// Returns how many components the method's outputs have at least.
+uint32_t fewestComponents(const limpid_denoiser_desc& desc) {
+    return desc.method == LIMPID_METHOD_VISIBILITY ? 1 : 3;
+}
+
+/// Throws UsageError if a picture cannot be written to where it is wanted, before any history advances.
+void checkOutputs(const limpid_denoiser_desc& desc, const limpid_host_frame& frame) {
+    for (size_t i = 0; i < std::size(outputNames); ++i)
+        if (frame.outputs[i].data) checkOutput(frame.outputs[i], outputNames[i], fewestComponents(desc));
+}
+
 }  // namespace
 
 extern "C" limpid_result limpid_denoise_host(limpid_denoiser* denoiser, const limpid_host_frame* given) {
@@ -44,6 +57,7 @@ extern "C" limpid_result limpid_denoise_host(limpid_denoiser* denoiser, const li
         limpid_denoiser& d = required(denoiser, "denoiser");
         const limpid_host_frame frame = wholeStruct(given, "limpid_host_frame");
         if (d.adopted) throw UsageError("the device is the caller's: record frames with limpid_record()");
+        checkOutputs(d.desc, frame);
         const bool hasPrevious = !d.startsAnew(frame.reset != 0);
         const IngestParams params = ingestParams(d.desc, frame.camera, hasPrevious);
         const limpid_host_output* wanted = frame.outputs;
@@ -53,17 +67,16 @@ extern "C" limpid_result limpid_denoise_host(limpid_denoiser* denoiser, const li
         const InstanceOutputs outputs = recordFrame(d.graph, d.desc, d.settings, images, params,
                                                     gpu::filterBacking(*d.device), signalsToo, {});
         const gpu::ImageHandle made[] = {outputs.color, outputs.radiance, outputs.specular};
-        const char* const names[] = {"color", "radiance", "specular"};
         for (size_t i = 0; i < LIMPID_OUTPUT_MAX; ++i)
             if (wanted[i].data && (i >= std::size(made) || !made[i]))
                 throw UsageError(formatText("the method has no output {}",
-                                            i < std::size(names) ? names[i] : "of this number"));
+                                            i < std::size(outputNames) ? outputNames[i] : "of this number"));
         d.graph.execute(*d.device);
         d.finish();
         for (size_t i = 0; i < std::size(made); ++i) {
             if (!wanted[i].data) continue;
             writePixels(wanted[i], d.graph.downloadFloat(*d.device, made[i]), d.desc.width, d.desc.height,
-                        names[i], d.desc.method == LIMPID_METHOD_VISIBILITY ? 1 : 3);
+                        outputNames[i], fewestComponents(d.desc));
         }
     });
 }

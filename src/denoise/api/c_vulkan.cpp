@@ -56,13 +56,21 @@ VkBool32* findPlace(VkPhysicalDeviceFeatures2* features, const NeededFeature& fe
 
 gpu::MemoryHooks hooksOf(const limpid_vulkan_device_desc& desc) {
     if (!desc.allocate && !desc.free) return {};
-    if (!desc.allocate || !desc.free) throw UsageError("`allocate` and `free` come together, or not at all");
-    // limpid_vulkan_memory and MemoryHooks::Block are the same struct under two names.
-    static_assert(sizeof(limpid_vulkan_memory) == sizeof(gpu::MemoryHooks::Block));
+    if (!desc.allocate || !desc.free) throw UsageError("set both `allocate` and `free`, or neither");
+    using Block = gpu::MemoryHooks::Block;
     gpu::MemoryHooks hooks;
-    hooks.user = desc.memory_user;
-    hooks.allocate = reinterpret_cast<decltype(hooks.allocate)>(desc.allocate);
-    hooks.free = reinterpret_cast<decltype(hooks.free)>(desc.free);
+    hooks.allocate = [allocate = desc.allocate, user = desc.memory_user](
+                         const VkMemoryRequirements& requirements, VkMemoryPropertyFlags properties,
+                         const char* name, Block& block) {
+        limpid_vulkan_memory given{};
+        const VkResult result = allocate(user, &requirements, properties, name, &given);
+        block = {given.memory, given.offset, given.mapped, given.handle};
+        return result;
+    };
+    hooks.free = [free = desc.free, user = desc.memory_user](const Block& block) {
+        const limpid_vulkan_memory given{block.memory, block.offset, block.mapped, block.handle};
+        free(user, &given);
+    };
     return hooks;
 }
 

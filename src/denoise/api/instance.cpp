@@ -45,7 +45,7 @@ void checkEnum(const char* what, const Enum& given, int last) {
     int value = 0;
     static_assert(sizeof(given) == sizeof(value));
     std::memcpy(&value, &given, sizeof(value));
-    if (value < 0 || value > last) throw UsageError(formatText("{}: {} is none of its values", what, value));
+    if (value < 0 || value > last) throw UsageError(formatText("{}: invalid value {}", what, value));
 }
 
 void checkMethod(const limpid_method& method) {
@@ -115,9 +115,9 @@ void check(const limpid_denoiser_desc& desc) {
     checkEnum("motion_direction", desc.motion_direction, LIMPID_MOTION_FROM_PREVIOUS);
     checkEnum("motion_depth", desc.motion_depth, LIMPID_MOTION_DISTANCE);
     checkEnum("clip_y", desc.clip_y, LIMPID_CLIP_Y_UP);
-    if (desc.signals > 2) throw UsageError(formatText("signals: there are 1 or 2, not {}", desc.signals));
+    if (desc.signals > 2) throw UsageError(formatText("signals must be 1 or 2, not {}", desc.signals));
     if (desc.signals == 2 && methods()[static_cast<size_t>(desc.method)].oneChannel)
-        throw UsageError("signals: visibility is one");
+        throw UsageError("signals must be 1 for the method 'visibility'");
     if (desc.width == 0 || desc.height == 0 || desc.width > 32768 || desc.height > 32768)
         throw UsageError(
             formatText("images of {} x {} pixels: each side has 1 to 32768", desc.width, desc.height));

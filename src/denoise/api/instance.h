@@ -19,11 +19,13 @@ struct InstanceOutputs {
 
 const std::vector<InstanceParameter>& parametersOf(limpid_method method);
 
-/// Throws UsageError if there is no such parameter, or the value is outside its range.
+/// Throws UsageError if there is no such parameter, or the value is outside its range or a fraction for an
+/// int or a bool.
 void setParameter(FilterSettings& settings, limpid_method method, std::string_view name, double value);
 double parameter(const FilterSettings& settings, limpid_method method, std::string_view name);
 
-/// Throws Error if an enumeration's value is invalid, or the size is 0.
+/// Throws UsageError if an enumeration's value, the number of signals or of frames in flight is invalid, or a
+/// side does not have 1 to 32768 pixels.
 void check(const limpid_denoiser_desc& desc);
 
 /// Returns the ingest pass's parameters that follow from conventions and cameras. `hasPrevious`: there is a

@@ -1,5 +1,7 @@
 #include "denoise/api/parameter_numbers.h"
 
+#include <cmath>
+
 #include "base/error.h"
 #include "base/text/format.h"
 
@@ -28,6 +30,11 @@ std::string valueText(const ParamInfo& info, std::string_view name, double value
         throw UsageError(
             formatText("{}: {} is outside its range {} to {}", name, value, info.minimum, info.maximum));
     if (std::holds_alternative<float>(info.defaultValue)) return formatText("{}", static_cast<float>(value));
+    if (value != std::floor(value)) {
+        const bool isBool = std::holds_alternative<bool>(info.defaultValue);
+        throw UsageError(
+            formatText("{}: {} is {}", name, value, isBool ? "neither 0 nor 1" : "not a whole number"));
+    }
     return formatText("{}", static_cast<int>(value));
 }
 

@@ -23,7 +23,8 @@ limpid_parameter describe(const InstanceParameter& parameter);
 /// Whether this is the parameter `info` of `group`.
 bool isParameter(const std::string& group, const ParamInfo& info, std::string_view name);
 
-/// As ParamTable::set() takes it. Throws UsageError if the value is outside its range.
+/// As ParamTable::set() takes it. Throws UsageError if the value is outside its range, or a fraction where
+/// the parameter is an int or a bool.
 std::string valueText(const ParamInfo& info, std::string_view name, double value);
 
 double toNumber(const ParamValue& value);

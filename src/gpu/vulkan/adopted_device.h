@@ -1,6 +1,8 @@
 // A Vulkan device that the caller owns. Limpid creates its objects on it, but no device or queue of its own.
 #pragma once
 
+#include <functional>
+
 #include "base/message.h"
 #include "gpu/vulkan/vk.h"
 
@@ -15,12 +17,12 @@ struct MemoryHooks {
         void* mapped = nullptr;  ///< host address of the block; null if it is not host-visible
         void* handle = nullptr;  ///< the caller's own value, passed to free()
     };
-    void* user = nullptr;
-    /// Returns a block of a memory type allowed by `requirements` that has all of `properties`. Null: Limpid
-    /// allocates memory itself, one VkDeviceMemory for each image and buffer.
-    VkResult (*allocate)(void* user, const VkMemoryRequirements* requirements,
-                         VkMemoryPropertyFlags properties, const char* name, Block* block) = nullptr;
-    void (*free)(void* user, const Block* block) = nullptr;
+    /// Sets `block` to a block of a memory type allowed by `requirements` that has all of `properties`. Null:
+    /// Limpid allocates memory itself, one VkDeviceMemory for each image and buffer.
+    std::function<VkResult(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags properties,
+                           const char* name, Block& block)>
+        allocate;
+    std::function<void(const Block& block)> free;
 };
 
 /// The device must have been created with Vulkan 1.3 and the features listed by requiredFeatures().

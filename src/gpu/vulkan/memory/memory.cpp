@@ -68,12 +68,12 @@ Memory allocateByHooks(const Context& context, const VkMemoryRequirements& requi
     const VkMemoryPropertyFlags properties =
         use == MemoryUse::Device ? VkMemoryPropertyFlags{VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT} : hostCoherent;
     MemoryHooks::Block block;
-    const VkResult result = hooks.allocate(hooks.user, &requirements, properties, name.c_str(), &block);
+    const VkResult result = hooks.allocate(requirements, properties, name.c_str(), block);
     if (result != VK_SUCCESS) failToAllocate(context, result, requirements.size, name);
     if (use != MemoryUse::Device && !block.mapped)
         throw Error(formatText("the caller's allocator gave '{}' memory that the host cannot see", name));
     return {block.memory, block.offset, static_cast<std::byte*>(block.mapped),
-            ownerOf(context, requirements.size, [hooks, block] { hooks.free(hooks.user, &block); })};
+            ownerOf(context, requirements.size, [free = hooks.free, block] { free(block); })};
 }
 
 }  // namespace
