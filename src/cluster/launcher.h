@@ -19,8 +19,8 @@ struct Launch {
 /// is none. `variable` returns the value of an environment variable, or null.
 Launch findLaunch(const std::function<const char*(const char*)>& variable);
 
-/// Loads the module limpid_mpi, from the folder of the program or ../lib/limpid (`libraryFolder`), and starts
-/// it. Throws Error with what to install if it is absent, or if the processes do not find each other.
+/// Loads the module limpid_mpi, from the folder of the program or where it is installed (../lib/limpid), and
+/// starts it. Throws Error with what to install if it is absent, or if the processes do not find each other.
 Transport& startTransport(const Launch& launch);
 
 }  // namespace limpid::cluster

@@ -293,9 +293,9 @@ void Ranks::loseSilent() {
         board_->lose(rank);
         transport_.forget(rank);
         show(MessageLevel::Warning,
-             fmt::format(
-                 "process {} on {} was not heard of for {:.0f} s and is given up; others make its pieces",
-                 rank, peer.machine, std::chrono::duration<double>(now - peer.heard).count()));
+             fmt::format("no message from process {} on {} for {:.0f} s; it is treated as lost and its work "
+                         "is redistributed",
+                         rank, peer.machine, std::chrono::duration<double>(now - peer.heard).count()));
         changed_.notify_all();
     }
 }

@@ -101,6 +101,7 @@ int leaveCluster(int code) {
         return code;
     }
     if (!ranks()->end()) ranks()->abort(code);
+    log::setReceiver({});  // it uses what ends now
     joined().reset();
     endIfInterrupted();
     return code;

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <list>
 #include <mutex>
+#include <optional>
 
 #include "cluster/pause.h"
 #include "cluster/transport.h"
@@ -55,13 +56,12 @@ class MpiTransport final : public Transport {
     bool poll(int& from, std::vector<std::byte>& bytes) override {
         const std::lock_guard lock(mpi_);
         forgetSent();
-        if (receiveSmall(smallTag, from, bytes)) return true;
-        if (incoming_.size() < maxIncoming && receiveSmall(sizeTag, from, bytes)) {
-            uint64_t size = 0;
-            std::memcpy(&size, bytes.data(), sizeof size);
-            incoming_.push_back({from, std::vector<std::byte>(size), 0, {}});
-            receivePart(incoming_.back());
+        if (const auto small = probe(smallTag)) {
+            from = small->MPI_SOURCE;
+            bytes = receive(*small);
+            return true;
         }
+        acceptLong();
         for (auto message = incoming_.begin(); message != incoming_.end(); ++message) {
             if (!goOn(*message)) continue;
             from = message->from;
@@ -143,17 +143,35 @@ class MpiTransport final : public Transport {
         }
     }
 
-    /// Small messages arrive whole, so receiving one does not wait.
-    bool receiveSmall(int tag, int& from, std::vector<std::byte>& bytes) {
+    /// A message with this tag that has arrived.
+    static std::optional<MPI_Status> probe(int tag) {
         MPI_Status status{};
-        int found = 0, count = 0;
+        int found = 0;
         MPI_Iprobe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &found, &status);
-        if (!found) return false;
-        MPI_Get_count(&status, MPI_BYTE, &count);
-        from = status.MPI_SOURCE;
-        bytes.resize(static_cast<size_t>(count));
-        MPI_Recv(bytes.data(), count, MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-        return true;
+        return found ? std::optional(status) : std::nullopt;
+    }
+
+    /// Small messages arrive whole, so receiving one does not wait.
+    static std::vector<std::byte> receive(const MPI_Status& probed) {
+        int count = 0;
+        MPI_Get_count(&probed, MPI_BYTE, &count);
+        std::vector<std::byte> bytes(static_cast<size_t>(count));
+        MPI_Recv(bytes.data(), count, MPI_BYTE, probed.MPI_SOURCE, probed.MPI_TAG, MPI_COMM_WORLD,
+                 MPI_STATUS_IGNORE);
+        return bytes;
+    }
+
+    /// Begins to receive a long message. The next one of the same sender waits, as the parts of both have the
+    /// same tag; its sender may have sent all parts of the one before although they are not received yet.
+    void acceptLong() {
+        if (incoming_.size() >= maxIncoming) return;
+        const auto first = probe(sizeTag);
+        const auto isOfSender = [&](const Incoming& message) { return message.from == first->MPI_SOURCE; };
+        if (!first || std::ranges::any_of(incoming_, isOfSender)) return;
+        uint64_t size = 0;
+        std::memcpy(&size, receive(*first).data(), sizeof size);
+        incoming_.push_back({first->MPI_SOURCE, std::vector<std::byte>(size), 0, {}});
+        receivePart(incoming_.back());
     }
 
     static void receivePart(Incoming& message) {
