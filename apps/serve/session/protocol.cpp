@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/json_float.h"
 #include "renderer/frame/parameters.h"
 #include "serve/session/preset_edits.h"
 #include "studio/state/state_json.h"
@@ -38,9 +39,10 @@ constexpr std::array<std::pair<const char*, Request::Kind>, 13> requests{{
 }};
 
 float movementOf(const json& value) {
-    const float number = value.get<float>();
-    if (!(std::abs(number) <= largestMovement)) throw UsageError("a movement is too large");
-    return number;
+    const auto number = finiteFloat(value);
+    if (!number) throw UsageError("a movement is no number, or too large");
+    if (!(std::abs(*number) <= largestMovement)) throw UsageError("a movement is too large");
+    return *number;
 }
 
 /// Others than whole numbers would be converted with undefined results.
@@ -75,8 +77,10 @@ std::array<float, 2> positionOf(const json& value) {
     if (!value.is_array() || value.size() != 2) throw UsageError("position: two numbers are needed");
     std::array<float, 2> position{};
     for (size_t i = 0; i < 2; ++i) {
-        position[i] = value.at(i).get<float>();
-        if (!(position[i] >= 0.0f && position[i] <= 1.0f)) throw UsageError("position: not between 0 and 1");
+        const auto number = finiteFloat(value.at(i));
+        if (!number || !(*number >= 0.0f && *number <= 1.0f))
+            throw UsageError("position: not between 0 and 1");
+        position[i] = *number;
     }
     return position;
 }

@@ -20,7 +20,7 @@ json readStateFile(const std::filesystem::path& file) {
     const auto* const text = reinterpret_cast<const char*>(bytes.data());
     json fields = json::parse(text, text + bytes.size(), nullptr, false);
     if (!fields.is_object() || !fields.contains(versionKey))
-        throw InputError(file, "this is no state of Limpid's");
+        throw InputError(file, "is not a Limpid state file");
     if (fields.at(versionKey) != version) throw InputError(file, "the state is of another version of Limpid");
     fields.erase(versionKey);
     // The lights are those of a scene, which is not known here.

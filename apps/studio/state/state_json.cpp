@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/json_float.h"
 #include "renderer/frame/parameters.h"
 
 namespace limpid::studio {
@@ -99,10 +100,14 @@ json jsonOf(const vec3& v) {
 }
 
 vec3 vectorOf(const std::string& key, const json& value) {
-    const auto numbers = value.get<std::vector<float>>();
-    if (numbers.size() != 3 || !std::ranges::all_of(numbers, [](float v) { return std::isfinite(v); }))
-        refuse(key, "three numbers are needed");
-    return {numbers[0], numbers[1], numbers[2]};
+    vec3 vector(0.0f);
+    if (!value.is_array() || value.size() != 3) refuse(key, "three numbers are needed");
+    for (int i = 0; i < 3; ++i) {
+        const auto number = finiteFloat(value[static_cast<size_t>(i)]);
+        if (!number) refuse(key, "three numbers are needed");
+        vector[i] = *number;
+    }
+    return vector;
 }
 
 template <typename Member>
@@ -135,14 +140,19 @@ json jsonOf(const scene::LightControl& light) {
             {"turn", light.turn}};
 }
 
+/// Limits the number before it becomes a float, which may not have its range.
+float limitedOf(const json& value, double minimum, double maximum) {
+    return static_cast<float>(std::clamp(value.get<double>(), minimum, maximum));
+}
+
 void setLight(scene::LightControl& light, const json& value) {
     light.on = value.at("on").get<bool>();
     light.color = glm::max(vectorOf("lights", value.at("color")), vec3(0.0f));
     light.position = vectorOf("lights", value.at("position"));
     const vec3 direction = vectorOf("lights", value.at("direction"));
     if (glm::length(direction) > 1e-6f) light.direction = glm::normalize(direction);
-    light.brightness = std::clamp(value.at("brightness").get<float>(), 0.0f, 1e9f);
-    light.turn = std::clamp(value.at("turn").get<float>(), -360.0f, 360.0f);
+    light.brightness = limitedOf(value.at("brightness"), 0.0, 1e9);
+    light.turn = limitedOf(value.at("turn"), -360.0, 360.0);
 }
 
 Entry lightsEntry() {
@@ -266,8 +276,8 @@ json jsonOf(const ParamValue& value) {
 std::string textOf(const std::string& key, const json& value) {
     if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
     if (value.is_number_integer()) return std::to_string(value.get<int64_t>());
-    if (value.is_number()) return fmt::format("{}", value.get<float>());
-    refuse(key, "a number, or true or false, is needed");
+    if (const auto number = finiteFloat(value)) return fmt::format("{}", *number);
+    refuse(key, value.is_number() ? "the number is too large" : "a number, or true or false, is needed");
 }
 
 Entry parameterEntry(const ParamGroup& group, size_t number) {

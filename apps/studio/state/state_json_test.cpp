@@ -112,11 +112,24 @@ TEST(StateJson, WhatDoesNotFitChangesNothing) {
     EXPECT_THAT(faultOf(state, {{"svgf.levels", json::array()}}), HasSubstr("svgf.levels"));
     EXPECT_THAT(faultOf(state, {{"eye", {1, 2}}}), HasSubstr("three numbers"));
     EXPECT_THAT(faultOf(state, {{"eye", {1, 2, 1e300}}}), HasSubstr("eye"));
+    EXPECT_THAT(faultOf(state, {{"eye", {1, 2, "3"}}}), HasSubstr("eye"));
+    EXPECT_THAT(faultOf(state, {{"eye", 3}}), HasSubstr("eye"));
+    EXPECT_THAT(faultOf(state, {{"svgf.alpha", 1e300}}), HasSubstr("svgf.alpha"));
     EXPECT_THAT(faultOf(state, {{"viewport", {100000, 1}}}), HasSubstr("viewport"));
     EXPECT_THAT(faultOf(state, {{"viewport", {-1, 1}}}), HasSubstr("viewport"));
     EXPECT_THAT(faultOf(state, {{"lights", json::array()}}), HasSubstr("lights"));
     EXPECT_THAT(faultOf(state, json::array()), HasSubstr("object"));
     EXPECT_EQ(toJson(state), before);
+}
+
+TEST(StateJson, NumbersOfLightsAreLimited) {
+    State state = stateWithLights();
+    json lights = toJson(state).at("lights");
+    lights[0]["brightness"] = 1e300;
+    lights[0]["turn"] = -1e300;
+    EXPECT_EQ(faultOf(state, {{"lights", lights}}), "no error");
+    EXPECT_EQ(state.lights.lights[0].brightness, 1e9f);
+    EXPECT_EQ(state.lights.lights[0].turn, -360.0f);
 }
 
 TEST(StateJson, ADenoiserOfOneChannelBringsAmbientOcclusion) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_float.h"
 #include "base/text/format.h"
 #include "denoise/kpcn/kpcn_params.h"
 #include "neural/tensor_file.h"
@@ -83,10 +84,10 @@ class Reader {
     /// Older files do not have the field; their networks use the default.
     float readFacing(const json& shape) const {
         if (!shape.contains("facing")) return KpcnWeights{}.facing;
-        const json& facing = shape["facing"];
-        if (!facing.is_number() || !(facing.get<float>() >= minFacing && facing.get<float>() <= 1.0f))
+        const auto facing = finiteFloat(shape["facing"]);
+        if (!facing || !(*facing >= minFacing && *facing <= 1.0f))
             fail(formatText("its metadata limpid.shape has no 'facing' from {} to 1", minFacing));
-        return facing.get<float>();
+        return *facing;
     }
 
     /// Older files do not have this field either: their networks see logarithms.

@@ -101,7 +101,7 @@ TEST(KpcnWeights, WhatIsWrongIsRefusedAndNamed) {
     EXPECT_THAT(shape(R"({"hidden":1,"channels":2,"width":4})"), HasSubstr("even"));
     EXPECT_THAT(shape(R"({"hidden":1,"channels":2,"width":1e3})"), HasSubstr("'width'"));
     EXPECT_THAT(shape(R"({"hidden":1,"channels":2,"width":99})"), HasSubstr("'width'"));
-    for (const char* facing : {"-2.1", "1.5", "\"any\"", "null"})
+    for (const char* facing : {"-2.1", "1.5", "1e300", "\"any\"", "null"})
         EXPECT_THAT(shape(fmt::format(R"({{"hidden":1,"channels":2,"width":3,"facing":{}}})", facing)),
                     HasSubstr("'facing'"));
     for (const char* input : {"\"square\"", "1", "null"})

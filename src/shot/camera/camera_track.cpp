@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/hash.h"
+#include "base/json_float.h"
 
 namespace limpid::shot {
 namespace {
@@ -63,10 +64,8 @@ class CameraReader {
         std::vector<float> result;
         if (found != object_.end() && found->is_array())
             for (const json& value : *found)
-                if (value.is_number()) result.push_back(value.get<float>());
-        const bool finite =
-            std::all_of(result.begin(), result.end(), [](float v) { return std::isfinite(v); });
-        if (result.size() != count || found->size() != count || !finite)
+                if (const auto number = finiteFloat(value)) result.push_back(*number);
+        if (result.size() != count || found->size() != count)
             fail(fmt::format("needs '{}', a list of {} numbers", key, count));
         return result;
     }
@@ -79,9 +78,9 @@ class CameraReader {
     std::optional<float> optionalNumber(const char* key) const {
         const auto found = object_.find(key);
         if (found == object_.end() || found->is_null()) return std::nullopt;
-        if (!found->is_number() || !std::isfinite(found->get<float>()))
-            fail(fmt::format("has a '{}' that is no number", key));
-        return found->get<float>();
+        const auto number = finiteFloat(*found);
+        if (!number) fail(fmt::format("has a '{}' that is no number", key));
+        return number;
     }
 
     const std::filesystem::path& file_;

@@ -67,6 +67,8 @@ TEST_F(CameraTrackTest, FaultsAreNamed) {
     EXPECT_THAT(messageOf(frame(R"(, "orthographic_height": -1)")), HasSubstr("not above 0"));
     EXPECT_THAT(messageOf(frame(R"(, "fov_y": 40, "shift": [1])")),
                 HasSubstr("needs 'shift', a list of 2 numbers"));
+    EXPECT_THAT(messageOf(frame(R"(, "fov_y": 40, "shift": [1, 1e300])")),
+                HasSubstr("needs 'shift', a list of 2 numbers"));
     EXPECT_THAT(messageOf(frame(R"(, "fov_y": 40)", "one")), HasSubstr("'one' is no frame number"));
     EXPECT_THAT(messageOf(R"({"frames": {"1": 5}})"), HasSubstr("the camera of frame 1 is no object"));
     EXPECT_THAT(

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/files/file.h"
+#include "base/json_float.h"
 
 namespace limpid::shot {
 namespace {
@@ -106,7 +107,7 @@ void setRole(LayerMap& map, const RoleInfo& role, const std::string& value, cons
 
 std::string textOf(const nlohmann::json& value) {
     if (value.is_string()) return value.get<std::string>();
-    if (value.is_number()) return fmt::format("{}", value.get<float>());
+    if (const auto number = finiteFloat(value)) return fmt::format("{}", *number);
     std::string list;
     for (const auto& item : value) list += (list.empty() ? "" : ",") + textOf(item);
     return list;
@@ -145,10 +146,9 @@ Assignments readAssignments(const std::filesystem::path& file) {
     if (!json.is_object()) throw InputError(file, "is no JSON object with a layer for each role");
     Assignments result;
     for (const auto& [key, value] : json.items()) {
-        const bool flat = value.is_string() || value.is_number() ||
-                          (value.is_array() && std::all_of(value.begin(), value.end(), [](const auto& item) {
-                               return item.is_number();
-                           }));
+        const auto isNumber = [](const auto& item) { return finiteFloat(item).has_value(); };
+        const bool flat = value.is_string() || isNumber(value) ||
+                          (value.is_array() && std::all_of(value.begin(), value.end(), isNumber));
         if (!flat) throw InputError(file, fmt::format("'{}' is neither a text nor a number", key));
         result.emplace_back(key, textOf(value));
     }
