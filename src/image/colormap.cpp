@@ -28,7 +28,7 @@ std::array<float, 3> magma(float value) {
 }
 
 Image magma(const Image& values) {
-    if (values.components != 1) throw Error("a colour map wants an image of one component");
+    if (values.components != 1) throw Error("a colour map needs an image of one component");
     Image colors(values.width, values.height, 3);
     for (size_t i = 0; i < values.pixels.size(); ++i) {
         const std::array<float, 3> color = magma(values.pixels[i]);

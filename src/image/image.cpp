@@ -27,7 +27,7 @@ void LayeredImage::add(std::string_view layer, std::string_view suffixes, const 
         height = image.height;
     }
     if (image.width != width || image.height != height || suffixes.size() > image.components) {
-        throw Error(fmt::format("layer '{}' is {}x{} with {} components; the image is {}x{} and wants {}",
+        throw Error(fmt::format("layer '{}' is {}x{} with {} components; the image is {}x{} and needs {}",
                                 layer, image.width, image.height, image.components, width, height,
                                 suffixes.size()));
     }

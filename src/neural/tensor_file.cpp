@@ -111,7 +111,7 @@ class Reader {
         const auto checkName = [&](int depth, json::parse_event_t event, json& parsed) {
             if (depth == 1 && event == json::parse_event_t::key &&
                 !names.insert(parsed.get<std::string>()).second)
-                fail(formatText("'{}' stands twice in its header", parsed.get<std::string>()));
+                fail(formatText("'{}' occurs twice in its header", parsed.get<std::string>()));
             return true;
         };
         const auto* first = reinterpret_cast<const char*>(text.data());
@@ -126,9 +126,9 @@ class Reader {
 
     std::map<std::string, std::string> metadataOf(const json& value) const {
         std::map<std::string, std::string> metadata;
-        if (!value.is_object()) fail("its metadata are no JSON object");
+        if (!value.is_object()) fail("its metadata is not a JSON object");
         for (const auto& [name, text] : value.items()) {
-            if (!text.is_string()) fail(formatText("its metadata '{}' are no string", name));
+            if (!text.is_string()) fail(formatText("the metadata value '{}' is not a string", name));
             metadata[name] = text.get<std::string>();
         }
         return metadata;

@@ -96,7 +96,8 @@ Header readHeader(Reader& reader) {
             reader.fail(fmt::format("has the unsupported {}", line));
         }
     }
-    if (!(header.exposure > 0.0) || !std::isfinite(header.exposure)) reader.fail("has an absurd EXPOSURE");
+    if (!(header.exposure > 0.0) || !std::isfinite(header.exposure))
+        reader.fail("its EXPOSURE values multiply to zero or infinity");
     parseResolution(reader, reader.line(), header);
     return header;
 }

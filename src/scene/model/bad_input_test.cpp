@@ -19,8 +19,8 @@ TEST_F(BadInput, WhatIsNoSceneFileAtAll) {
         fs::create_directory(folder / name);
         expectRefused(folder / name, "is a directory");
     }
-    expectRefused(write("scene.fbx", "x"), "no scene format");
-    expectRefused(write("scene", "x"), "no scene format");
+    expectRefused(write("scene.fbx", "x"), "not a supported scene format");
+    expectRefused(write("scene", "x"), "not a supported scene format");
     expectRefused(write("scene.gltf", "{"), "not valid JSON");
     expectRefused(write("scene.gltf", "[]"), "no object");
     expectRefused(write("scene.gltf", "{}"), "asset");

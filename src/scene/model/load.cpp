@@ -20,7 +20,7 @@ Scene dispatch(const std::filesystem::path& path, const LoadOptions& options) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".gltf" || extension == ".glb") return gltf::load(path, options);
     if (extension == ".obj") return loadObj(path, options);
-    throw InputError(path, "is no scene format that is read (.gltf, .glb, .obj)");
+    throw InputError(path, "is not a supported scene format (.gltf, .glb, .obj)");
 }
 
 }  // namespace
