@@ -64,7 +64,7 @@ TEST_F(CliDatasetTest, KeepsWhatIsWholeAndMakesAnewWhatIsDamaged) {
 TEST_F(CliDatasetTest, SaysWhatIsWrong) {
     expect(command("data", "--shard 3/2"), 2, "--shard");
     expect(command("data", "--shard x"), 2, "--shard");
-    expect("dataset --rooms 0 -o '" + path("data") + "'", 2, "no rooms");
+    expect("dataset --rooms 0 -o '" + path("data") + "'", 2, "choose at least one room");
     expect("dataset --samples 4,1 -o '" + path("data") + "'", 2, "ascend");
     expect("dataset --device cpu --rooms 0 --scene nothing.gltf -o '" + path("data") + "'", 3,
            "nothing.gltf");
@@ -99,6 +99,30 @@ TEST_F(CliDatasetTest, AFurnaceIsAsBrightAsItMustBe) {
         meanOf(tensors.at("000000/2/diffuse.variance")) / meanOf(tensors.at("000000/16/diffuse.variance"));
     EXPECT_GT(ratio, 5.0);
     EXPECT_LT(ratio, 13.0);
+}
+
+/// Everything is white and gray, and lit alike: what SVGF accumulates, filters and composes is known.
+TEST_F(CliDatasetTest, AClipHasWhatAFilterOfAccumulatedLightSees) {
+    expect(
+        "dataset --device cpu --rooms 0 --scene builtin:furnace --width 24 --height 16 --samples 1 "
+        "--reference-samples 64 --sequence 1,3 -o '" +
+            path("data") + "'",
+        0, "manifest");
+    const auto tensors = neural::readTensorFile(path("data/examples.00000.safetensors")).tensors;
+    EXPECT_EQ(tensors.size(), 2u * (2u * 4u + 9u));
+    const auto mean = [&](const std::string& name) { return meanOf(tensors.at("000000/3/" + name)); };
+    EXPECT_EQ(tensors.at("000000/1/diffuse").shape, (std::vector<uint64_t>{4, 16, 24}));
+    EXPECT_EQ(tensors.at("000000/1/camera").shape, (std::vector<uint64_t>{4, 3}));
+    EXPECT_NEAR(mean("reference"), 1.996, 0.01);  // of which 1 is emission
+    EXPECT_NEAR(mean("albedo"), 0.5, 1e-3);
+    // The fourth channel is 1.
+    EXPECT_NEAR(mean("svgf"), (3.0 * 1.996 + 1.0) / 4.0, 0.02);
+    EXPECT_GT(mean("diffuse.frames"), 2.0);
+    EXPECT_EQ(mean("specular.past"), 0.0);
+    const auto manifest = nlohmann::json::parse(get("data/manifest.json"));
+    EXPECT_EQ(manifest["dataset"]["sequence"], (std::vector<int>{1, 3}));
+    expect("dataset --sequence 3,1 --samples 1 -o '" + path("x") + "'", 2, "ascending");
+    expect("dataset --sequence 1,3 -o '" + path("x") + "'", 2, "one number of --samples");
 }
 
 }  // namespace

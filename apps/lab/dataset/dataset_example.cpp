@@ -1,8 +1,7 @@
-#include "lab/dataset_example.h"
+#include "lab/dataset/dataset_example.h"
 
-#include <algorithm>
-#include <cmath>
-
+#include "cli/cluster/session.h"
+#include "lab/dataset/dataset_tensor.h"
 #include "renderer/frame/frame_renderer.h"
 #include "renderer/layers/layers.h"
 #include "scene/model/camera.h"
@@ -13,30 +12,7 @@ namespace {
 using image::Image;
 using image::LayeredImage;
 
-constexpr float largestHalf = 65504.0f;
 constexpr uint32_t referenceSeed = 0x9E3779B9u;
-
-/// Converts interleaved components to planar channels.
-neural::Tensor tensorOf(const Image& picture) {
-    const size_t pixels = size_t{picture.width} * picture.height;
-    std::vector<float> values(pixels * picture.components);
-    for (size_t p = 0; p < pixels; ++p) {
-        for (uint32_t c = 0; c < picture.components; ++c) {
-            const float value = picture.pixels[p * picture.components + c];
-            values[c * pixels + p] =
-                std::isfinite(value) ? std::clamp(value, -largestHalf, largestHalf) : 0.0f;
-        }
-    }
-    return neural::makeTensor(neural::ElementType::Float16,
-                              {picture.components, picture.height, picture.width}, values);
-}
-
-/// In files, depth is 1e10 where the ray misses; here it becomes 0.
-Image distances(const LayeredImage& layers) {
-    Image depth = layers.get("depth", "Z");
-    for (float& z : depth.pixels) z = z < 1e9f ? z : 0.0f;
-    return depth;
-}
 
 LayeredImage layersOf(FrameRenderer& still) {
     return toLayeredImage(still.download(), layerNames(), image::Storage::Float);
@@ -47,7 +23,7 @@ void addInputs(FrameRenderer& still, const std::string& prefix, neural::TensorFi
     for (const char* name : {"diffuse", "specular", "albedo"})
         file.tensors[prefix + name] = tensorOf(layers.get(name, "RGB"));
     file.tensors[prefix + "normal"] = tensorOf(layers.get("normal", "XYZ"));
-    file.tensors[prefix + "depth"] = tensorOf(distances(layers));
+    file.tensors[prefix + "depth"] = tensorOf(distancesOf(layers));
     for (const char* name : {"diffuse", "specular", "albedo", "normal", "depth"}) {
         Image variance(layers.width, layers.height, 1);
         variance.pixels = layers.find(std::string(name) + ".variance.V")->values;
@@ -70,13 +46,17 @@ void addExample(gpu::Device& device, scene::GpuScene& scene, const scene::Camera
     noisy.begin({.camera = view});
     for (const uint32_t count : settings.samples) {
         while (noisy.samplesInMean() < count) noisy.launch();
+        if (ranks()) ranks()->beat();
         addInputs(noisy, name + "/" + std::to_string(count) + "/", file);
     }
     render.seed ^= referenceSeed;
     render.samplesPerLaunch = 8;
     render.samplesPerLaunch = samplesPerLaunch(device, render);
     FrameRenderer reference(device, scene, render, settings.referenceSamples);
-    reference.render({.camera = view});
+    reference.begin({.camera = view});
+    while (reference.launch()) {
+        if (ranks()) ranks()->beat();
+    }
     const LayeredImage layers = layersOf(reference);
     for (const char* side : {"diffuse", "specular"})
         file.tensors[name + "/reference/" + side] = tensorOf(layers.get(side, "RGB"));

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -18,9 +20,11 @@
 #include "cli/console/progress.h"
 #include "cli/options/device_options.h"
 #include "cli/options/long_render_options.h"
-#include "lab/dataset_example.h"
+#include "lab/dataset/dataset_clip.h"
+#include "lab/dataset/dataset_example.h"
 #include "scene/device/scene_data.h"
 #include "scene/model/scene_source.h"
+#include "scene/motion/movement.h"
 
 namespace limpid::cli {
 namespace {
@@ -36,6 +40,7 @@ struct DatasetOptions {
     std::string folder, shard = "1/1";
     std::vector<std::string> scenes;
     uint32_t rooms = 100, stillLifes = 0, perFile = 8;
+    std::vector<uint32_t> sequence;  ///< the frames of each clip that are stored; empty: stills
     ExampleSettings example;
 };
 
@@ -73,16 +78,18 @@ class Dataset {
 
     /// Returns the parameters that determine the content: the same in every file of a dataset.
     json parameters() const {
-        return {{"version", 2},
-                {"seed", o_.example.seed},
-                {"rooms", o_.rooms},
-                {"still_lifes", o_.stillLifes},
-                {"scenes", o_.scenes},
-                {"per_file", o_.perFile},
-                {"width", o_.example.extent.width},
-                {"height", o_.example.extent.height},
-                {"samples", o_.example.samples},
-                {"reference_samples", o_.example.referenceSamples}};
+        json result{{"version", 2},
+                    {"seed", o_.example.seed},
+                    {"rooms", o_.rooms},
+                    {"still_lifes", o_.stillLifes},
+                    {"scenes", o_.scenes},
+                    {"per_file", o_.perFile},
+                    {"width", o_.example.extent.width},
+                    {"height", o_.example.extent.height},
+                    {"samples", o_.example.samples},
+                    {"reference_samples", o_.example.referenceSamples}};
+        if (!o_.sequence.empty()) result["sequence"] = o_.sequence;
+        return result;
     }
 
     /// Returns the metadata of a complete file; none if it is missing or damaged. Throws UsageError if it
@@ -106,19 +113,12 @@ class Dataset {
         json list = json::array();
         for (uint64_t example = number * o_.perFile;
              example < std::min(examples(), (number + 1) * o_.perFile); ++example) {
-            if (ranks()) ranks()->beat();
-            const std::string name = fmt::format("{:06}", example);
-            const scene::Scene scene = scene::openScene({.scene = sceneOf(example)});
+            scene::Scene scene = scene::openScene({.scene = sceneOf(example)});
+            if (!o_.sequence.empty() && !scene.rig.clips.empty()) scene::chooseClip(scene, "");
             const scene::SceneData data = scene::buildSceneData(scene);
             scene::GpuScene gpuScene(device, data, {tracer, {}});
-            ExampleSettings settings = o_.example;
-            settings.seed = numberFrom(o_.example.seed, "samples", example);
-            // Networks see both: stills, and sequences with rays through the pixels' centres.
-            settings.jitter = example % 2 == 0 ? Jitter::Pixel : Jitter::Off;
-            addExample(device, gpuScene, scene.cameras.front(), settings, name, result);
-            list.push_back({{"name", name},
-                            {"scene", sceneOf(example)},
-                            {"jitter", example % 2 == 0 ? "pixel" : "off"}});
+            list.push_back(o_.sequence.empty() ? addStill(device, gpuScene, scene, example, result)
+                                               : addMoving(device, gpuScene, scene, data, example, result));
         }
         result.metadata = {{parametersKey, parameters().dump()}, {examplesKey, list.dump()}};
         neural::writeTensorFile(file(number), result);
@@ -143,6 +143,50 @@ class Dataset {
     }
 
   private:
+    static std::string nameOf(uint64_t example) { return fmt::format("{:06}", example); }
+
+    json addStill(gpu::Device& device, scene::GpuScene& gpuScene, const scene::Scene& scene, uint64_t example,
+                  neural::TensorFile& result) const {
+        ExampleSettings settings = o_.example;
+        settings.seed = numberFrom(o_.example.seed, "samples", example);
+        // Networks see both: stills, and sequences with rays through the pixels' centres.
+        settings.jitter = example % 2 == 0 ? Jitter::Pixel : Jitter::Off;
+        addExample(device, gpuScene, scene.cameras.front(), settings, nameOf(example), result);
+        return {{"name", nameOf(example)},
+                {"scene", sceneOf(example)},
+                {"jitter", example % 2 == 0 ? "pixel" : "off"}};
+    }
+
+    /// From 0 to 1, for this example.
+    double fraction(std::string_view purpose, uint64_t example) const {
+        return numberFrom(o_.example.seed, purpose, example) / 4294967296.0;
+    }
+
+    /// A camera that orbits, drives or shakes, up to four times faster or slower than usual.
+    json addMoving(gpu::Device& device, scene::GpuScene& gpuScene, const scene::Scene& scene,
+                   const scene::SceneData& data, uint64_t example, neural::TensorFile& result) const {
+        ClipSettings settings{.extent = o_.example.extent,
+                              .frames = o_.sequence,
+                              .samples = o_.example.samples.front(),
+                              .referenceSamples = o_.example.referenceSamples,
+                              .seed = numberFrom(o_.example.seed, "samples", example)};
+        constexpr std::array paths{"orbit", "dolly", "shake"};
+        const std::string path = paths[numberFrom(o_.example.seed, "path", example) % paths.size()];
+        const SequenceTiming timing{
+            .framesPerSecond = 30.0 * std::exp2(4.0 * fraction("speed", example) - 2.0),
+            .start = 2.0 * fraction("start", example)};
+        const scene::Camera& camera = scene.cameras.front();
+        const Sequence sequence(
+            scene, data, camera,
+            scene::builtinCameraPath(path, scene, camera, timing.timeOf(o_.sequence.back() + 1)), timing);
+        addClip(device, gpuScene, sequence, settings, nameOf(example), result);
+        return {{"name", nameOf(example)},
+                {"scene", sceneOf(example)},
+                {"camera_path", path},
+                {"frames_per_second", timing.framesPerSecond},
+                {"start", timing.start}};
+    }
+
     const DatasetOptions& o_;
 };
 
@@ -154,11 +198,15 @@ void makeFiles(const Dataset& dataset, const Shard& shard, gpu::Device& device, 
         if (!dataset.finished(number)) dataset.make(device, tracer, number);
     };
     if (!ranks()) {
-        Progress progress("files", dataset.files());
-        for (uint64_t number = shard.index - 1; number < dataset.files(); number += shard.count) {
-            makeFile(number);
-            progress.show(number);
+        const uint64_t first = shard.index - 1;
+        const uint64_t ofShard =
+            dataset.files() > first ? (dataset.files() - first - 1) / shard.count + 1 : 0;
+        Progress progress("files", ofShard);
+        for (uint64_t done = 0; done < ofShard; ++done) {
+            progress.show(done);
+            makeFile(first + done * shard.count);
         }
+        progress.show(ofShard);
         return;
     }
     ClusterProgress progress("files", dataset.files());
@@ -181,9 +229,14 @@ void run(const DatasetOptions& o) {
     const Shard shard = chosenShard(o.shard);
     refuseInCluster(shard.count > 1, "--shard: the processes of a cluster share out the work by themselves");
     if (!std::ranges::is_sorted(o.example.samples, std::less_equal{}) || o.example.samples.front() == 0)
-        throw UsageError("--samples are above 0 and ascend");
+        throw UsageError("--samples must be positive and strictly ascending");
+    if (!o.sequence.empty()) {
+        if (!std::ranges::is_sorted(o.sequence, std::less_equal{}))
+            throw UsageError("the frames of --sequence must be strictly ascending");
+        if (o.example.samples.size() != 1) throw UsageError("--sequence takes one number of --samples: 1");
+    }
     const Dataset dataset(o);
-    if (dataset.examples() == 0) throw UsageError("a dataset of no rooms, no still lifes and no scenes");
+    if (dataset.examples() == 0) throw UsageError("choose at least one room, still life or scene");
     makeFolder(o.folder);
     const OpenDevice device = openDevice(o.device);
     const scene::Tracer tracer = chosenTracer(o.device, *device);
@@ -223,6 +276,12 @@ void addDatasetCommand(CLI::App& app) {
                      "Samples per pixel of the clean pictures; more is cleaner and slower (1024)")
         ->check(CLI::Range(1, 1 << 24));
     command->add_option("--per-file", o->perFile, "Examples per file (8)")->check(CLI::Range(1, 10000));
+    command
+        ->add_option("--sequence", o->sequence,
+                     "Clips of a moving camera instead of stills: the numbers of the frames to store, "
+                     "comma-separated (1,3,7,15); with one number of --samples")
+        ->delimiter(',')
+        ->check(CLI::Range(0, 100000));
     command->add_option("--shard", o->shard,
                         "I/N: write the I-th of N parts only; existing files are kept (1/1)");
     addDeviceOptions(*command, o->device);
