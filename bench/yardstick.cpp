@@ -15,7 +15,7 @@
 #include "renderer/frame/frame_renderer.h"
 #include "scene/builtin/builtin.h"
 #include "scene/model/camera.h"
-#include "scene/model/prepare.h"
+#include "scene/prepare/prepare.h"
 
 namespace limpid::bench {
 namespace {

@@ -21,7 +21,7 @@
 #include "cli/options/pipeline_options.h"
 #include "cli/render/render_job.h"
 #include "renderer/frame/frame_download.h"
-#include "renderer/frame/network_file.h"
+#include "renderer/method/network_file.h"
 #include "shot/run/denoise_shot.h"
 #include "shot/run/explain_shot.h"
 #include "shot/run/shot_request.h"

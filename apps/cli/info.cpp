@@ -9,11 +9,11 @@
 #include "commands.h"
 #include "gpu/vulkan/device.h"
 #include "info_scene.h"
-#include "renderer/frame/parameters.h"
-#include "renderer/frame/presets.h"
 #include "renderer/layers/layers.h"
+#include "renderer/method/parameters.h"
+#include "renderer/method/presets.h"
 #include "scene/builtin/builtin.h"
-#include "scene/device/tracer.h"
+#include "scene/device/trees/tracer.h"
 
 namespace limpid::cli {
 namespace {

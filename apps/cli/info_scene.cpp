@@ -8,7 +8,7 @@
 
 #include "base/text/terminal_text.h"
 #include "cli/console/json_text.h"
-#include "scene/model/scene_source.h"
+#include "scene/load/scene_source.h"
 #include "scene/motion/animation.h"
 
 namespace limpid::cli {

@@ -1,5 +1,5 @@
 // `limpid merge`: merges the shards of a render into the result of a single run.
-#include "renderer/long/merge.h"
+#include "renderer/long/merge/merge.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "cli/console/json_text.h"
 #include "cli/render/picture_output.h"
 #include "commands.h"
-#include "renderer/long/merge_frames.h"
+#include "renderer/long/merge/merge_frames.h"
 #include "renderer/long/render_identity.h"
 
 namespace limpid::cli {

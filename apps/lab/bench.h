@@ -6,7 +6,7 @@
 
 #include "cli/console/pass_times.h"
 #include "cli/options/device_options.h"
-#include "scene/model/scene_source.h"
+#include "scene/load/scene_source.h"
 
 namespace limpid::cli {
 

@@ -14,9 +14,9 @@
 #include "cli/options/pipeline_options.h"
 #include "lab/bench.h"
 #include "lab/bench_scene.h"
-#include "renderer/frame/network_file.h"
-#include "renderer/frame/parameters.h"
-#include "renderer/frame/presets.h"
+#include "renderer/method/network_file.h"
+#include "renderer/method/parameters.h"
+#include "renderer/method/presets.h"
 
 namespace limpid::cli {
 namespace {

@@ -16,8 +16,8 @@
 #include "lab/bench.h"
 #include "lab/bench_scene.h"
 #include "neural/convolutions.h"
-#include "renderer/frame/network_file.h"
-#include "renderer/frame/parameters.h"
+#include "renderer/method/network_file.h"
+#include "renderer/method/parameters.h"
 
 namespace limpid::cli {
 namespace {

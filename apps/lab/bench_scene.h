@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "gpu/vulkan/device.h"
-#include "renderer/frame/settings.h"
+#include "renderer/method/settings.h"
 #include "scene/device/gpu_scene.h"
+#include "scene/load/scene_source.h"
 #include "scene/model/scene.h"
-#include "scene/model/scene_source.h"
 
 namespace limpid::cli {
 

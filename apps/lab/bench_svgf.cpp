@@ -14,8 +14,8 @@
 #include "lab/bench.h"
 #include "lab/bench_scene.h"
 #include "lab/svg_plot.h"
-#include "renderer/frame/parameters.h"
-#include "renderer/frame/presets.h"
+#include "renderer/method/parameters.h"
+#include "renderer/method/presets.h"
 #include "scene/builtin/builtin.h"
 
 namespace limpid::cli {

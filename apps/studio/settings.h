@@ -8,12 +8,12 @@
 #include <string>
 
 #include "gpu/vulkan/device.h"
-#include "renderer/frame/settings.h"
-#include "scene/device/tracer.h"
+#include "renderer/method/settings.h"
+#include "scene/device/trees/tracer.h"
+#include "scene/load/scene_source.h"
 #include "scene/model/scene.h"
-#include "scene/model/scene_source.h"
-#include "studio/loop/networks.h"
-#include "studio/loop/scene_loading.h"
+#include "studio/background/networks.h"
+#include "studio/background/scene_loading.h"
 #include "studio/state/state.h"
 
 namespace limpid::studio {

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "base/log.h"
-#include "studio/loop/priority.h"
+#include "studio/background/priority.h"
 #include "studio/loop/render_loop.h"
 
 namespace limpid::studio {

@@ -17,7 +17,7 @@
 #include "base/error.h"
 #include "gpu/specialise/specialise.h"
 #include "image/io/picture.h"
-#include "renderer/frame/network_file.h"
+#include "renderer/method/network_file.h"
 #include "studio/compare/history_text.h"
 #include "studio/state/state_file.h"
 #include "studio/state/state_json.h"

@@ -1,9 +1,9 @@
 #include "scene_renderer.h"
 
 #include "base/error.h"
-#include "renderer/frame/network_file.h"
-#include "renderer/frame/parameters.h"
 #include "renderer/layers/layers.h"
+#include "renderer/method/network_file.h"
+#include "renderer/method/parameters.h"
 #include "scene/framing/camera_path.h"
 #include "scene/model/camera.h"
 #include "scene/motion/movement.h"

@@ -14,7 +14,7 @@
 #include "renderer/frame/frame_renderer.h"
 #include "renderer/sequence/sequence.h"
 #include "scene/device/gpu_scene.h"
-#include "scene/model/scene_source.h"
+#include "scene/load/scene_source.h"
 
 namespace limpid::python {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "shot/shot_frame.h"
+#include "shot/frame/shot_frame.h"
 
 namespace limpid::shot {
 

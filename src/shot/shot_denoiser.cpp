@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shot/estimate/reflection_motion.h"
+#include "shot/estimate/variance_estimate.h"
 #include "shot/motion/motion_search.h"
-#include "shot/reflection_motion.h"
-#include "shot/variance_estimate.h"
 
 namespace limpid::shot {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "denoise/api/denoiser.h"
 #include "gpu/vulkan/device.h"
-#include "shot/clean_picture.h"
-#include "shot/loaded_frame.h"
+#include "shot/frame/clean_picture.h"
+#include "shot/frame/loaded_frame.h"
 
 namespace limpid::shot {
 

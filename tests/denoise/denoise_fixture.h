@@ -8,7 +8,7 @@
 #include "tests/gpu/gpu_fixture.h"
 #include "tests/oracle/double_atrous.h"
 #include "tests/oracle/double_temporal.h"
-#include "tests/oracle/synthetic_frames.h"
+#include "tests/oracle/synthetic/synthetic_frames.h"
 
 namespace limpid::test {
 

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "image/metrics/metrics.h"
-#include "renderer/frame/parameters.h"
-#include "renderer/frame/presets.h"
+#include "renderer/method/parameters.h"
+#include "renderer/method/presets.h"
 #include "tests/denoise/denoise_fixture.h"
 #include "tests/oracle/double_denoise_fixture.h"
 

@@ -6,8 +6,8 @@
 
 #include "renderer/frame/frame_renderer.h"
 #include "renderer/sequence/sequence.h"
-#include "scene/model/prepare.h"
 #include "scene/motion/movement.h"
+#include "scene/prepare/prepare.h"
 #include "tests/gpu/render_fixture.h"
 
 namespace limpid::test {

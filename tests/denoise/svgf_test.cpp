@@ -6,9 +6,9 @@
 #include <limits>
 #include <map>
 
-#include "renderer/frame/presets.h"
+#include "renderer/method/presets.h"
 #include "tests/denoise/denoise_fixture.h"
-#include "tests/oracle/double_svgf.h"
+#include "tests/oracle/svgf/double_svgf.h"
 
 namespace limpid::test {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "renderer/long/accumulation.h"
-#include "renderer/long/accumulation_header.h"
+#include "renderer/long/sums/accumulation.h"
+#include "renderer/long/sums/accumulation_header.h"
 
 extern "C" size_t LLVMFuzzerMutate(uint8_t* data, size_t size, size_t maxSize);
 

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "renderer/layers/layers.h"
-#include "renderer/long/accumulation_file.h"
+#include "renderer/long/sums/accumulation_file.h"
 #include "scratch.h"
 
 namespace limpid::fuzz {

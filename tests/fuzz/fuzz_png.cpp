@@ -1,7 +1,7 @@
 #include <utility>
 
 #include "image/io/png/png.h"
-#include "image/io/texture_decode.h"
+#include "image/io/texture/texture_decode.h"
 #include "scene/device/mip_levels.h"
 #include "scratch.h"
 

@@ -1,8 +1,8 @@
 #include "picture_target.h"
 
 #include "image/io/picture.h"
-#include "scene/model/environment.h"
-#include "scene/model/validate.h"
+#include "scene/lights/environment.h"
+#include "scene/load/validate.h"
 #include "scratch.h"
 
 namespace limpid::fuzz {

@@ -8,11 +8,11 @@
 
 #include "image/io/png/png.h"
 #include "scene/device/pack.h"
+#include "scene/load/load.h"
 #include "scene/model/camera.h"
-#include "scene/model/load.h"
-#include "scene/model/prepare.h"
 #include "scene/motion/movement.h"
 #include "scene/motion/scene_animator.h"
+#include "scene/prepare/prepare.h"
 
 namespace limpid::fuzz {
 namespace fs = std::filesystem;

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "scene/builtin/builtin.h"
-#include "scene/model/prepare.h"
+#include "scene/prepare/prepare.h"
 #include "tests/gpu/render_fixture.h"
 
 namespace limpid::test {

@@ -8,10 +8,10 @@
 #include "renderer/frame/frame_renderer.h"
 #include "renderer/sequence/sequence.h"
 #include "scene/builtin/builtin.h"
-#include "scene/model/load.h"
-#include "scene/model/prepare.h"
+#include "scene/load/load.h"
 #include "scene/motion/movement.h"
-#include "tests/gpu/trace_fixture.h"
+#include "scene/prepare/prepare.h"
+#include "tests/gpu/trace/trace_fixture.h"
 #include "tests/oracle/double_pose.h"
 #include "tests/reference/moving_scenes.h"
 

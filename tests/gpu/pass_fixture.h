@@ -6,7 +6,7 @@
 #include "passes/gbuffer/gbuffer.h"
 #include "passes/pathtrace/pathtrace.h"
 #include "tests/gpu/render_fixture.h"
-#include "tests/gpu/trace_fixture.h"
+#include "tests/gpu/trace/trace_fixture.h"
 
 namespace limpid::test {
 

@@ -6,10 +6,10 @@
 #include "image/metrics/metrics.h"
 #include "image/tonemap.h"
 #include "renderer/frame/frame_renderer.h"
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 #include "renderer/sequence/sequence.h"
 #include "scene/builtin/builtin.h"
-#include "scene/model/prepare.h"
+#include "scene/prepare/prepare.h"
 #include "tests/gpu/render_fixture.h"
 
 namespace limpid::test {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tests/oracle/double_frame.h"
-#include "tests/oracle/synthetic_frames.h"
+#include "tests/oracle/synthetic/synthetic_frames.h"
 
 namespace limpid::test {
 

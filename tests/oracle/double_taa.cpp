@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tests/oracle/double_reprojection.h"
-#include "tests/oracle/double_svgf.h"
+#include "tests/oracle/svgf/double_svgf.h"
 
 namespace limpid::test {
 namespace {

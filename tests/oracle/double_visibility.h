@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "tests/oracle/double_svgf.h"
+#include "tests/oracle/svgf/double_svgf.h"
 
 namespace limpid::test {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "scene/model/prepare.h"
-#include "tests/gpu/trace_fixture.h"
+#include "scene/prepare/prepare.h"
+#include "tests/gpu/trace/trace_fixture.h"
 
 namespace limpid::test {
 

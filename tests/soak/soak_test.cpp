@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "scene/model/scene_source.h"
+#include "scene/load/scene_source.h"
 #include "serve/remote/remote_socket.h"
 #include "serve/session/protocol.h"
 #include "serve/web/web_server.h"

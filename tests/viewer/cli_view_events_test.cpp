@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "image/io/picture.h"
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 #include "tests/viewer/view_fixture.h"
 
 namespace limpid {

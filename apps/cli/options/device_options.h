@@ -6,7 +6,7 @@
 
 #include "gpu/vulkan/device.h"
 #include "renderer/frame/pipeline_store.h"
-#include "scene/device/tracer.h"
+#include "scene/device/trees/tracer.h"
 
 namespace limpid::cli {
 

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "renderer/frame/pipeline.h"
+#include "renderer/method/pipeline.h"
 #include "scene/model/camera.h"
 
 namespace limpid::cli {

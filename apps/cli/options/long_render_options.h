@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "renderer/long/accumulation_header.h"
+#include "renderer/long/sums/accumulation_header.h"
 
 namespace limpid::cli {
 

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "renderer/frame/presets.h"
+#include "renderer/method/presets.h"
 
 namespace limpid::cli {
 

@@ -9,9 +9,9 @@
 #include "cli/render/clip_output.h"
 #include "cli/render/picture_output.h"
 #include "image/tone_curve.h"
-#include "renderer/frame/parameters.h"
-#include "renderer/frame/presets.h"
 #include "renderer/layers/layers.h"
+#include "renderer/method/parameters.h"
+#include "renderer/method/presets.h"
 
 namespace limpid::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "cli/options/pipeline_options.h"
 #include "cli/options/scene_options.h"
 #include "cli/options/sequence_options.h"
-#include "renderer/frame/settings.h"
+#include "renderer/method/settings.h"
 
 namespace limpid::cli {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/model/scene_source.h"
+#include "scene/load/scene_source.h"
 
 namespace limpid::cli {
 

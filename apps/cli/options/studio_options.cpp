@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "renderer/frame/parameters.h"
-#include "renderer/frame/presets.h"
+#include "renderer/method/parameters.h"
+#include "renderer/method/presets.h"
 #include "studio/state/command_line.h"
 #include "studio/state/state_file.h"
 

@@ -6,7 +6,7 @@
 #include "image/metrics/metrics.h"
 #include "image/tonemap.h"
 #include "renderer/frame/camera_text.h"
-#include "renderer/long/merge_frames.h"
+#include "renderer/long/merge/merge_frames.h"
 #include "renderer/long/render_identity.h"
 
 namespace limpid::cli {

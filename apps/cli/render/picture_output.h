@@ -9,7 +9,7 @@
 #include "image/tone_curve.h"
 #include "renderer/layers/layers.h"
 #include "renderer/layers/picture_name.h"
-#include "renderer/long/accumulation_header.h"
+#include "renderer/long/sums/accumulation_header.h"
 
 namespace limpid::cli {
 

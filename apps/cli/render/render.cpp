@@ -12,9 +12,9 @@
 #include "cli/console/interrupt.h"
 #include "cli/render/render_job.h"
 #include "image/io/exr/exr.h"
-#include "renderer/frame/network_file.h"
 #include "renderer/long/block_renderer.h"
 #include "renderer/long/render_identity.h"
+#include "renderer/method/network_file.h"
 
 namespace limpid::cli {
 

@@ -10,7 +10,7 @@
 #include "cli/options/render_options.h"
 #include "denoise/methods/temporal/temporal.h"
 #include "gpu/vulkan/device.h"
-#include "renderer/long/accumulation.h"
+#include "renderer/long/sums/accumulation.h"
 #include "scene/device/gpu_scene.h"
 #include "scene/model/scene.h"
 

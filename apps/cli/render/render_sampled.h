@@ -3,7 +3,7 @@
 
 #include "cli/render/render_job.h"
 #include "renderer/frame/frame_renderer.h"
-#include "renderer/long/accumulation.h"
+#include "renderer/long/sums/accumulation.h"
 
 namespace limpid::cli {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/long/accumulation.h"
+#include "renderer/long/sums/accumulation.h"
 
 namespace limpid::cli {
 

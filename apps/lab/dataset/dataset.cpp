@@ -23,7 +23,7 @@
 #include "lab/dataset/dataset_clip.h"
 #include "lab/dataset/dataset_example.h"
 #include "scene/device/scene_data.h"
-#include "scene/model/scene_source.h"
+#include "scene/load/scene_source.h"
 #include "scene/motion/movement.h"
 
 namespace limpid::cli {

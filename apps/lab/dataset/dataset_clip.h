@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "neural/tensor_file.h"
-#include "renderer/frame/settings.h"
+#include "renderer/method/settings.h"
 #include "renderer/sequence/sequence.h"
 #include "scene/device/gpu_scene.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "neural/tensor_file.h"
-#include "renderer/frame/settings.h"
+#include "renderer/method/settings.h"
 #include "scene/device/gpu_scene.h"
 
 namespace limpid::cli {

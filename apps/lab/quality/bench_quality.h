@@ -11,7 +11,7 @@
 #include "image/metrics/frame_scores.h"
 #include "lab/quality/quality_methods.h"
 #include "lab/quality/quality_reference.h"
-#include "renderer/frame/settings.h"
+#include "renderer/method/settings.h"
 #include "renderer/sequence/sequence.h"
 
 namespace limpid::cli {

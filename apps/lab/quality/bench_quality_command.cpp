@@ -17,9 +17,9 @@
 #include "lab/quality/quality_options.h"
 #include "lab/quality/quality_output.h"
 #include "lab/quality/quality_sequences.h"
-#include "renderer/frame/network_file.h"
-#include "renderer/frame/parameters.h"
-#include "renderer/frame/presets.h"
+#include "renderer/method/network_file.h"
+#include "renderer/method/parameters.h"
+#include "renderer/method/presets.h"
 #include "scene/framing/camera_path.h"
 
 namespace limpid::cli {

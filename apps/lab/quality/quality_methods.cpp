@@ -11,8 +11,8 @@
 
 #include "base/error.h"
 #include "denoise/api/denoiser.h"
-#include "renderer/frame/parameters.h"
-#include "renderer/frame/presets.h"
+#include "renderer/method/parameters.h"
+#include "renderer/method/presets.h"
 
 namespace limpid::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/frame/settings.h"
+#include "renderer/method/settings.h"
 
 namespace limpid::cli {
 

@@ -8,7 +8,7 @@
 
 #include "gpu/vulkan/device.h"
 #include "image/metrics/geometry.h"
-#include "renderer/frame/settings.h"
+#include "renderer/method/settings.h"
 #include "renderer/sequence/sequence.h"
 #include "scene/device/gpu_scene.h"
 

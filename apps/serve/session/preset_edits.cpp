@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "renderer/frame/presets.h"
+#include "renderer/method/presets.h"
 #include "studio/state/state_json.h"
 
 namespace limpid::serve {

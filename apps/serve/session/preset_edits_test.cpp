@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/frame/presets.h"
+#include "renderer/method/presets.h"
 #include "studio/state/state_json.h"
 
 namespace limpid::serve {

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/json_float.h"
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 #include "serve/session/preset_edits.h"
 #include "studio/state/state_json.h"
 

@@ -7,7 +7,7 @@
 
 #include "scene/framing/camera_path.h"
 #include "studio/camera/fly_camera.h"
-#include "studio/loop/stage.h"
+#include "studio/live/stage.h"
 
 namespace limpid::studio {
 

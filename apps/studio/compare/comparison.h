@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "studio/loop/live_render.h"
+#include "studio/live/live_render.h"
 #include "studio/state/timings.h"
 
 namespace limpid::studio {

@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 
 namespace limpid::studio {
 namespace {

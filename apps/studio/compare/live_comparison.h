@@ -3,8 +3,8 @@
 
 #include <chrono>
 
-#include "studio/loop/live_render.h"
-#include "studio/loop/networks.h"
+#include "studio/background/networks.h"
+#include "studio/live/live_render.h"
 #include "studio/state/state.h"
 
 namespace limpid::studio {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "studio/loop/live_render.h"
+#include "studio/live/live_render.h"
 
 namespace limpid::studio {
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/files/file.h"
-#include "scene/model/light_file.h"
+#include "scene/lights/light_file.h"
 #include "studio/compare/picture_files.h"
 #include "studio/loop/render_loop.h"
 #include "studio/state/command_line.h"

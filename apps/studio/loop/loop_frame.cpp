@@ -8,7 +8,7 @@
 #include "image/tonemap.h"
 #include "renderer/frame/reset_rule.h"
 #include "scene/model/camera.h"
-#include "studio/loop/priority.h"
+#include "studio/background/priority.h"
 #include "studio/loop/render_loop.h"
 
 namespace limpid::studio {

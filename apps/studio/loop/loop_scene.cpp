@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "scene/model/light_file.h"
+#include "scene/lights/light_file.h"
 #include "scene/motion/movement.h"
 #include "studio/loop/render_loop.h"
 #include "studio/state/light_desk.h"

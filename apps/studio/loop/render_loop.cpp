@@ -6,7 +6,7 @@
 #include <chrono>
 #include <utility>
 
-#include "scene/model/light_file.h"
+#include "scene/lights/light_file.h"
 #include "scene/motion/movement.h"
 
 namespace limpid::studio {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 
 namespace limpid::studio {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "image/tone_curve.h"
-#include "renderer/frame/settings.h"
-#include "scene/model/scene_source.h"
-#include "studio/loop/playback.h"
+#include "renderer/method/settings.h"
+#include "scene/load/scene_source.h"
+#include "studio/live/playback.h"
 
 namespace limpid::studio {
 

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 
 namespace limpid::studio {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/files/file.h"
 #include "base/log.h"
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 
 namespace limpid::studio {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 
 namespace limpid::studio {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/model/light_control.h"
-#include "scene/model/scene_source.h"
+#include "scene/lights/light_control.h"
+#include "scene/load/scene_source.h"
 
 namespace limpid::studio {
 

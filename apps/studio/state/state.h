@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "image/tone_curve.h"
-#include "renderer/frame/denoiser_parts.h"
-#include "renderer/frame/settings.h"
+#include "renderer/method/denoiser_parts.h"
+#include "renderer/method/settings.h"
 #include "studio/compare/comparison.h"
 #include "studio/compare/inspector.h"
 #include "studio/state/light_desk.h"

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/json_float.h"
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 
 namespace limpid::studio {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 
 namespace limpid::studio {
 namespace {

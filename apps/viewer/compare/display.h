@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "studio/compare/inspector.h"
-#include "studio/loop/live_render.h"
+#include "studio/live/live_render.h"
 #include "viewer/compare/texels.h"
 #include "viewer/panel/interface.h"
 #include "viewer/panel/panel.h"

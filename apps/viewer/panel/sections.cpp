@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "image/tone_curve.h"
-#include "renderer/frame/parameters.h"
-#include "renderer/frame/presets.h"
+#include "renderer/method/parameters.h"
+#include "renderer/method/presets.h"
 #include "scene/builtin/builtin.h"
 #include "viewer/panel/actions.h"
 #include "viewer/panel/fields.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "renderer/frame/parameters.h"
+#include "renderer/method/parameters.h"
 
 namespace limpid {
 namespace {

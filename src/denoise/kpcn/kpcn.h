@@ -16,7 +16,7 @@ struct KpcnSettings {
     int levels = 4;
     float phiColor = 3.5f;
     bool half = true;     ///< used when the network is created: kpcnPrecision()
-    bool cis565 = false;  ///< used when the weights are read: renderer/frame/network_file.h
+    bool cis565 = false;  ///< used when the weights are read: renderer/method/network_file.h
     bool operator==(const KpcnSettings&) const = default;
 };
 const ParamTable<KpcnSettings>& kpcnParams();

@@ -11,8 +11,8 @@
 #include "base/log.h"
 #include "image/io/exr/exr_rows.h"
 #include "image/io/hdr.h"
-#include "image/io/limits.h"
-#include "image/io/row_reducer.h"
+#include "image/io/rows/limits.h"
+#include "image/io/rows/row_reducer.h"
 
 namespace limpid::image {
 namespace {

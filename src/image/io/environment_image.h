@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "image/image.h"
-#include "image/io/memory_bound.h"
+#include "image/io/rows/memory_bound.h"
 
 namespace limpid::image {
 

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/files/file_kind.h"
-#include "image/io/limits.h"
+#include "image/io/rows/limits.h"
 
 namespace limpid::image {
 namespace {

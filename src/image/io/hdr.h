@@ -7,7 +7,7 @@
 #include <span>
 
 #include "image/image.h"
-#include "image/io/row_sink.h"
+#include "image/io/rows/row_sink.h"
 
 namespace limpid::image {
 

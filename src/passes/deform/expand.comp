@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Converts nodes from the quantised format to the expanded one, like scene/model/expanded_nodes.cpp does when
+// Converts nodes from the quantised format to the expanded one, like scene/prepare/expanded_nodes.cpp does when
 // a scene is loaded.
 #include "passes/deform/deform_params.h"
 #include "shaders/common/scene_layout.h"

@@ -8,7 +8,7 @@
 
 #include "gpu/graph/frame_graph.h"
 #include "passes/pathtrace/pathtrace.h"
-#include "renderer/frame/settings.h"
+#include "renderer/method/settings.h"
 #include "scene/device/gpu_scene.h"
 #include "scene/motion/scene_animator.h"
 

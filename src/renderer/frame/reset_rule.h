@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "renderer/frame/settings.h"
+#include "renderer/method/settings.h"
 #include "shaders/common/camera.h"
 
 namespace limpid {

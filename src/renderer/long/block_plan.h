@@ -7,9 +7,9 @@
 namespace limpid {
 
 /// Samples per pixel in a block. A block is summed on the device in float32 and then added to the exact sums
-/// (renderer/long/accumulation.h). It is also the most that a killed render loses, and the least that a shard
-/// gets. On a fast GPU, downloading a block costs as much time as some samples, so blocks are larger if there
-/// are many samples. The size depends on nothing else, so all devices divide a render alike.
+/// (renderer/long/sums/accumulation.h). It is also the most that a killed render loses, and the least that a
+/// shard gets. On a fast GPU, downloading a block costs as much time as some samples, so blocks are larger if
+/// there are many samples. The size depends on nothing else, so all devices divide a render alike.
 inline constexpr uint32_t blockSamplesFor(uint64_t samples) {
     return samples < 4096 ? 64 : 256;
 }

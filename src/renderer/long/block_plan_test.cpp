@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/long/accumulation_header.h"
+#include "renderer/long/sums/accumulation_header.h"
 
 namespace limpid {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/frame/frame_renderer.h"
-#include "renderer/long/accumulation.h"
+#include "renderer/long/sums/accumulation.h"
 #include "renderer/sequence/sequence.h"
 
 namespace limpid {

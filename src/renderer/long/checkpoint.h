@@ -4,7 +4,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "renderer/long/accumulation_file.h"
+#include "renderer/long/sums/accumulation_file.h"
 
 namespace limpid {
 

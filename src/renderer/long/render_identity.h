@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "renderer/frame/settings.h"
+#include "renderer/method/settings.h"
 #include "renderer/sequence/sequence.h"
 
 namespace limpid {

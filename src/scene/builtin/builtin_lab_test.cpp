@@ -18,7 +18,7 @@
 #include "scene/framing/camera_path.h"
 #include "scene/framing/framing.h"
 #include "scene/model/camera.h"
-#include "scene/model/prepare.h"
+#include "scene/prepare/prepare.h"
 
 namespace limpid::scene::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "scene/builtin/mesh_builder.h"
 #include "scene/builtin/random_scene.h"
-#include "scene/model/environment.h"
+#include "scene/lights/environment.h"
 
 namespace limpid::scene {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "scene/builtin/builtin.h"
-#include "scene/model/prepare.h"
+#include "scene/prepare/prepare.h"
 
 namespace limpid::scene {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "base/error.h"
-#include "scene/device/lamps.h"
-#include "scene/model/expanded_nodes.h"
+#include "scene/device/lights/lamps.h"
+#include "scene/prepare/expanded_nodes.h"
 
 namespace limpid::scene {
 

@@ -9,7 +9,7 @@
 #include "gpu/graph/frame_graph.h"
 #include "gpu/vulkan/device.h"
 #include "scene/device/scene_data.h"
-#include "scene/device/tracer.h"
+#include "scene/device/trees/tracer.h"
 
 namespace limpid::scene {
 

@@ -4,8 +4,8 @@
 #include <bit>
 #include <optional>
 
-#include "scene/device/bvh.h"
 #include "scene/device/scene_data.h"
+#include "scene/device/trees/bvh.h"
 #include "scene/model/scene.h"
 
 namespace limpid::scene {

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "scene/device/pack.h"
-#include "scene/device/top_tree.h"
+#include "scene/device/trees/top_tree.h"
 
 namespace limpid::scene {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "image/io/texture_decode.h"
+#include "image/io/texture/texture_decode.h"
 #include "shaders/common/scene_layout.h"
 
 namespace limpid::scene {

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "image/io/memory_bound.h"
+#include "image/io/rows/memory_bound.h"
 #include "scene/model/scene.h"
 
 namespace limpid::scene {

@@ -11,9 +11,9 @@
 
 #include "base/error.h"
 #include "scene/framing/framing.h"
-#include "scene/gltf/gltf_json.h"
+#include "scene/gltf/document/gltf_json.h"
+#include "scene/load/scene_files.h"
 #include "scene/model/camera.h"
-#include "scene/model/scene_files.h"
 
 namespace limpid::scene {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "scene/framing/occupancy.h"
 #include "scene/framing/tight_view.h"
-#include "scene/model/mesh_repair.h"
+#include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene/device/bvh.h"
+#include "scene/device/trees/bvh.h"
 #include "scene/model/scene.h"
 
 namespace limpid::scene {

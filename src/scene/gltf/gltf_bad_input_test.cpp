@@ -2,7 +2,7 @@
 #include <cstring>
 #include <limits>
 
-#include "scene/model/bad_input_test.h"
+#include "scene/load/bad_input_test.h"
 
 namespace limpid::scene::test {
 namespace {

@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "base/error.h"
-#include "scene/gltf/gltf_animation.h"
-#include "scene/gltf/gltf_camera.h"
-#include "scene/gltf/gltf_document.h"
+#include "scene/gltf/document/gltf_document.h"
 #include "scene/gltf/gltf_material.h"
 #include "scene/gltf/gltf_mesh.h"
-#include "scene/gltf/gltf_nodes.h"
-#include "scene/model/mesh_repair.h"
+#include "scene/gltf/rig/gltf_animation.h"
+#include "scene/gltf/rig/gltf_camera.h"
+#include "scene/gltf/rig/gltf_nodes.h"
+#include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene::gltf {
 namespace {

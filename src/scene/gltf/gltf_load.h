@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "scene/model/load_options.h"
+#include "scene/load/load_options.h"
 #include "scene/model/scene.h"
 
 namespace limpid::scene::gltf {

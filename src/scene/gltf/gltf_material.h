@@ -7,7 +7,7 @@
 // https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos
 #pragma once
 
-#include "scene/gltf/gltf_document.h"
+#include "scene/gltf/document/gltf_document.h"
 #include "scene/gltf/gltf_texture.h"
 
 namespace limpid::scene::gltf {

@@ -5,8 +5,8 @@
 
 #include "base/log.h"
 #include "image/io/png/png.h"
-#include "scene/model/loader_test_files.h"
-#include "scene/model/prepare.h"
+#include "scene/load/loader_test_files.h"
+#include "scene/prepare/prepare.h"
 
 namespace limpid::scene::test {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "scene/gltf/gltf_access.h"
-#include "scene/model/mesh_repair.h"
+#include "scene/gltf/document/gltf_access.h"
+#include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene::gltf {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/gltf/gltf_document.h"
-#include "scene/gltf/gltf_pose.h"
+#include "scene/gltf/document/gltf_document.h"
+#include "scene/gltf/rig/gltf_pose.h"
 
 namespace limpid::scene::gltf {
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "base/log.h"
-#include "scene/model/loader_test_files.h"
+#include "scene/load/loader_test_files.h"
 
 namespace limpid::scene::test {
 namespace {

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "image/io/png/png.h"
-#include "scene/model/loader_test_files.h"
-#include "scene/model/mesh_repair.h"
-#include "scene/model/scene_files.h"
-#include "scene/model/validate.h"
+#include "scene/load/loader_test_files.h"
+#include "scene/load/scene_files.h"
+#include "scene/load/validate.h"
+#include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene::test {
 namespace {

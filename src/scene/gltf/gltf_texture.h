@@ -10,8 +10,8 @@
 #include <string>
 
 #include "scene/device/texture_pool.h"
-#include "scene/gltf/gltf_document.h"
-#include "scene/model/load_options.h"
+#include "scene/gltf/document/gltf_document.h"
+#include "scene/load/load_options.h"
 
 namespace limpid::scene::gltf {
 

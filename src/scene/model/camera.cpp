@@ -3,7 +3,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene/model/mesh_repair.h"
+#include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene {
 

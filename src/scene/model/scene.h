@@ -148,7 +148,7 @@ struct PunctualLight {
 };
 
 /// A latitude-longitude picture around the scene: row 0 is +Y, the centre column looks along -Z (see
-/// scene/model/environment.h).
+/// scene/lights/environment.h).
 struct Environment {
     uint32_t width = 0;
     uint32_t height = 0;
@@ -178,7 +178,7 @@ struct Scene {
     std::vector<Material> materials;  ///< never empty
     std::vector<Texture> textures;
     std::vector<PunctualLight> lights;
-    std::vector<Camera> cameras;  ///< not empty after prepare() (scene/model/prepare.h)
+    std::vector<Camera> cameras;  ///< not empty after prepare() (scene/prepare/prepare.h)
     Environment environment;
     Rig rig;
     int clip = none;  ///< index into rig.clips of the clip that plays

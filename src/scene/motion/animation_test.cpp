@@ -8,9 +8,9 @@
 
 #include "base/log.h"
 #include "scene/framing/camera_path.h"
-#include "scene/model/loader_test_files.h"
-#include "scene/model/prepare.h"
+#include "scene/load/loader_test_files.h"
 #include "scene/motion/movement.h"
+#include "scene/prepare/prepare.h"
 
 namespace limpid::scene::test {
 namespace {

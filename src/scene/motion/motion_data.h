@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "scene/device/bvh.h"
-#include "scene/device/light_tree.h"
+#include "scene/device/lights/light_tree.h"
+#include "scene/device/trees/bvh.h"
 
 namespace limpid::scene {
 

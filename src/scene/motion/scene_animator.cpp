@@ -8,9 +8,9 @@
 
 #include "base/error.h"
 #include "scene/device/pack.h"
-#include "scene/device/top_tree.h"
+#include "scene/device/trees/top_tree.h"
 #include "scene/model/camera.h"
-#include "scene/model/mesh_repair.h"
+#include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene {
 

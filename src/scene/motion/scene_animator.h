@@ -38,7 +38,8 @@ class SceneAnimator {
     /// the moving parts, not on the size of the scene. Throws Error if a vertex position would overflow.
     SceneFrame frame(double time, double previousTime) const;
 
-    /// Call it when the lights were packed again (scene/model/live_lights.h), with the same number and order.
+    /// Call it when the lights were packed again (scene/lights/live_lights.h), with the same number and
+    /// order.
     void setLights(const SceneData& data);
 
   private:

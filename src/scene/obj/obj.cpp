@@ -12,11 +12,11 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "scene/device/texture_pool.h"
-#include "scene/model/mesh_repair.h"
-#include "scene/model/scene_files.h"
+#include "scene/load/scene_files.h"
 #include "scene/obj/obj_material.h"
 #include "scene/obj/obj_polygon.h"
 #include "scene/obj/obj_text.h"
+#include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene {
 namespace {

@@ -1,7 +1,7 @@
 // Tests malformed and abusive OBJ files (model/bad_input_test.cpp).
 #include <cmath>
 
-#include "scene/model/bad_input_test.h"
+#include "scene/load/bad_input_test.h"
 
 namespace limpid::scene::test {
 namespace {

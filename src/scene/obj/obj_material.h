@@ -20,8 +20,8 @@
 #include <string>
 
 #include "scene/device/texture_pool.h"
+#include "scene/load/scene_files.h"
 #include "scene/model/scene.h"
-#include "scene/model/scene_files.h"
 #include "scene/obj/obj_text.h"
 
 namespace limpid::scene {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "image/io/png/png.h"
-#include "scene/model/loader_test_files.h"
-#include "scene/model/validate.h"
+#include "scene/load/loader_test_files.h"
+#include "scene/load/validate.h"
 #include "scene/obj/obj_polygon.h"
 
 namespace limpid::scene::test {

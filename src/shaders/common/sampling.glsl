@@ -63,7 +63,7 @@ float powerHeuristic(float a, float b) {
     return a2 > 0.0 ? a2 / (a2 + b2) : 0.0;
 }
 
-/// Latitude-longitude map: row 0 is +Y, the centre column is -Z (scene/model/environment.h).
+/// Latitude-longitude map: row 0 is +Y, the centre column is -Z (scene/lights/environment.h).
 vec2 latLongOf(vec3 d) {
     // Not acos(d.y): lavapipe's has an error of 5e-5 of the picture's height.
     return vec2(atan(d.x, -d.z) / (2.0 * PI) + 0.5, atan(length(d.xz), d.y) / PI);

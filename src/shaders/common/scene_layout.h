@@ -13,7 +13,7 @@ namespace limpid::layout {
 
 LIMPID_CONST uint NONE = 0xFFFFFFFFu;
 
-// bvhNodes, quantised (on CPUs): scene/device/bvh.h's BvhNode.
+// bvhNodes, quantised (on CPUs): scene/device/trees/bvh.h's BvhNode.
 LIMPID_CONST uint BVH_NODE_TEXELS = 4u;
 // bvhNodes, expanded (on GPUs): x, y, z of the lower corners of the four children, then of the upper;
 // children. A missing child has its lower corner above its upper.
@@ -100,11 +100,11 @@ LIMPID_CONST uint LIGHT_KIND_MASK = 7u;
 LIMPID_CONST uint LIGHT_MIRRORED =
     8u;  // v1 and v2 are swapped relative to the mesh, so that the front face stays the front
 
-// lightTree: children of nodes (scene/device/light_tree.h), the root's first, those of a node one after the
-// other. A child: centre of the bounding sphere | its radius and the range, upper halves of floats; axis
-// (octahedral) | sin of half the angles of the cone and of the ramp beyond it (2 x unorm16; a spot's: inner
-// and outer cone) | intensity | link. Then a texel for each entry of lightDensity: trail from the root. Then
-// a texel for each directional light: its index in `lights` | 0 | 0 | 0.
+// lightTree: children of nodes (scene/device/lights/light_tree.h), the root's first, those of a node one
+// after the other. A child: centre of the bounding sphere | its radius and the range, upper halves of floats;
+// axis (octahedral) | sin of half the angles of the cone and of the ramp beyond it (2 x unorm16; a spot's:
+// inner and outer cone) | intensity | link. Then a texel for each entry of lightDensity: trail from the root.
+// Then a texel for each directional light: its index in `lights` | 0 | 0 | 0.
 LIMPID_CONST uint LIGHT_CHILD_TEXELS = 2u;
 LIMPID_CONST uint LIGHT_NODE_WIDTH = 4u;       // largest number of children
 LIMPID_CONST uint LIGHT_ROOT_CHILDREN = 68u;   // the same for the root: also point and spot lights

@@ -1,4 +1,4 @@
-// Chooses a light for a point by walking the light tree (scene/device/light_tree.h), and returns the probability of
+// Chooses a light for a point by walking the light tree (scene/device/lights/light_tree.h), and returns the probability of
 // that choice.
 #ifndef LIMPID_LIGHT_TREE_GLSL
 #define LIMPID_LIGHT_TREE_GLSL
@@ -51,7 +51,7 @@ float usableShare(Receiver from, float cosine, float cosineB) {
 }
 
 /// The weight of a child: an upper bound of the irradiance that it can cause, except that distances are
-/// those of its centre. 0 only if no light of it can reach the point. Formula: scene/device/light_bounds.h.
+/// those of its centre. 0 only if no light of it can reach the point. Formula: scene/device/lights/light_bounds.h.
 float lightWeight(Receiver from, uvec4 place, uvec4 effect) {
     const float intensity = uintBitsToFloat(effect.z);
     const float radius = uintBitsToFloat(place.w & 0xFFFF0000u), range = uintBitsToFloat(place.w << 16);

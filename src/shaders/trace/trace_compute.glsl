@@ -1,4 +1,4 @@
-// Ray traversal of the four-wide trees described in scene/device/bvh.h.
+// Ray traversal of the four-wide trees described in scene/device/trees/bvh.h.
 //
 // CPUs use two nested loops ("while-while": T. Aila, S. Laine, "Understanding the efficiency of ray traversal
 // on GPUs", HPG 2009): first all lanes descend to a leaf, then all test triangles. GPUs use one loop in which

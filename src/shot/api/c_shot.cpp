@@ -3,7 +3,7 @@
 #include "denoise/api/c_device.h"
 #include "denoise/api/c_guard.h"
 #include "limpid/shot.h"
-#include "renderer/frame/network_file.h"
+#include "renderer/method/network_file.h"
 #include "shot/run/denoise_shot.h"
 #include "shot/run/explain_shot.h"
 #include "shot/run/shot_request.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "scene/gltf/gltf_camera_rig.h"
+#include "scene/gltf/rig/gltf_camera_rig.h"
 #include "shot/camera/camera_track.h"
 
 namespace limpid::shot {

@@ -6,9 +6,9 @@
 #include "base/error.h"
 #include "image/io/temp_folder.h"
 #include "shot/camera/camera_track.h"
+#include "shot/frame/pixel_layers.h"
+#include "shot/frame/shot_frame.h"
 #include "shot/layers/recognise.h"
-#include "shot/pixel_layers.h"
-#include "shot/shot_frame.h"
 
 namespace limpid::shot {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shot/pixel_layers.h"
+#include "shot/frame/pixel_layers.h"
 
 namespace limpid::shot {
 namespace {

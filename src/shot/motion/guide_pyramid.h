@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "shot/shot_frame.h"
+#include "shot/frame/shot_frame.h"
 
 namespace limpid::shot {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "shot/frame/pixel_layers.h"
 #include "shot/motion/block_matching.h"
-#include "shot/pixel_layers.h"
 
 namespace limpid::shot {
 namespace {

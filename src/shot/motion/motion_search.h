@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "image/image.h"
+#include "shot/frame/shot_frame.h"
 #include "shot/motion/guide_pyramid.h"
-#include "shot/shot_frame.h"
 
 namespace limpid::shot {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "shot/pixel_layers.h"
+#include "shot/frame/pixel_layers.h"
 
 namespace limpid::shot {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "shot/clean_picture.h"
+#include "shot/frame/clean_picture.h"
 
 namespace limpid::shot {
 

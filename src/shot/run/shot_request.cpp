@@ -13,9 +13,9 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/hash.h"
-#include "renderer/frame/parameters.h"
-#include "renderer/frame/presets.h"
 #include "renderer/layers/picture_name.h"
+#include "renderer/method/parameters.h"
+#include "renderer/method/presets.h"
 
 namespace limpid::shot {
 namespace {

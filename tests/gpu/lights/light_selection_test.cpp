@@ -2,9 +2,9 @@
 // samplers with each other: their means over many samples must agree. Slow.
 #include "scene/builtin/builtin_parts.h"
 #include "scene/builtin/procedural_textures.h"
-#include "scene/model/prepare.h"
 #include "scene/motion/movement.h"
 #include "scene/motion/scene_animator.h"
+#include "scene/prepare/prepare.h"
 #include "tests/gpu/render_fixture.h"
 
 namespace limpid::test {

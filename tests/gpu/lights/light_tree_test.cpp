@@ -1,6 +1,6 @@
 // Compares the walk through the light tree on the device with the formula in double precision, with its own
 // probabilities, and with what really arrives.
-#include "scene/device/light_tree.h"
+#include "scene/device/lights/light_tree.h"
 
 #include <algorithm>
 #include <cmath>

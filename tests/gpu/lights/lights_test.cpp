@@ -6,7 +6,7 @@
 
 #include "environment_pdf.comp.h"
 #include "lights_sample.comp.h"
-#include "scene/model/environment.h"
+#include "scene/lights/environment.h"
 #include "tests/gpu/gpu_fixture.h"
 #include "tests/gpu/lights/lights_sample.h"
 #include "tests/reference/statistics.h"

@@ -1,15 +1,15 @@
 // Compares lights changed on the device with scenes built with them; and tests the preview, which needs no
 // lights.
-#include "scene/model/live_lights.h"
+#include "scene/lights/live_lights.h"
 
 #include <gmock/gmock.h>
 
 #include "renderer/frame/frame_renderer.h"
 #include "scene/builtin/builtin.h"
-#include "scene/model/light_control.h"
-#include "scene/model/prepare.h"
+#include "scene/lights/light_control.h"
 #include "scene/motion/movement.h"
 #include "scene/motion/scene_animator.h"
+#include "scene/prepare/prepare.h"
 #include "tests/gpu/render_fixture.h"
 
 namespace limpid::test {

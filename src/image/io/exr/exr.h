@@ -23,7 +23,7 @@ void writeExr(const std::filesystem::path& path, const LayeredImage& image,
 /// channels in the file's (alphabetical) order, and its string attributes. The result covers the display
 /// window. Pixels that the data window lacks (a cropped render) are 0; pixels outside the display window
 /// (overscan) are dropped. Throws InputError if the file is missing, malformed, truncated or incomplete, too
-/// large (image/io/limits.h), deep, or has subsampled channels.
+/// large (image/io/rows/limits.h), deep, or has subsampled channels.
 LayeredImage readExr(const std::filesystem::path& path);
 
 /// Like readExr(), but for bytes in memory; `name` is used in messages.

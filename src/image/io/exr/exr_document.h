@@ -39,7 +39,7 @@ struct ExrPart {
 class ExrDocument {
   public:
     /// Both throw InputError if the file is missing, malformed or truncated, or its claims do not fit its
-    /// size (image/io/limits.h). Deep parts and those with subsampled channels are unreadable, no error.
+    /// size (image/io/rows/limits.h). Deep parts and those with subsampled channels are unreadable, no error.
     static ExrDocument read(const std::filesystem::path& path);
     /// `name` is used in messages.
     static ExrDocument decode(std::vector<std::byte> bytes, const std::filesystem::path& name);

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <span>
 
-#include "image/io/row_sink.h"
+#include "image/io/rows/row_sink.h"
 
 namespace limpid::image {
 

@@ -12,10 +12,10 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/files/file_kind.h"
-#include "image/io/jpeg.h"
-#include "image/io/limits.h"
 #include "image/io/png/png_check.h"
 #include "image/io/png/png_read.h"
+#include "image/io/rows/limits.h"
+#include "image/io/texture/jpeg.h"
 
 namespace limpid::image {
 namespace {

@@ -33,7 +33,7 @@ void writePng(const std::filesystem::path& path, const ByteImage& image);
 /// Decodes a PNG or JPEG to 8-bit RGBA (16-bit files lose their low byte; grey becomes RGB; missing alpha
 /// becomes 255). `name` is used in messages. Throws InputError if the bytes are neither, are damaged or
 /// truncated (checks PNG checksums and JPEG markers), or claim more pixels than they can hold or
-/// image/io/limits.h allows.
+/// image/io/rows/limits.h allows.
 ByteImage decodeImage(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 /// Like decodeImage(), but reads a file.

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "image/io/limits.h"
+#include "image/io/rows/limits.h"
 
 namespace limpid::image {
 namespace {

@@ -54,7 +54,7 @@ PngReader::PngReader(std::span<const std::byte> bytes, const std::filesystem::pa
     guarded([&] {
         state_->info = png_create_info_struct(state_->png);
         png_set_read_fn(state_->png, state_.get(), onRead);
-        // image/io/limits.h limits the size; libpng's own limit is a million pixels along an axis.
+        // image/io/rows/limits.h limits the size; libpng's own limit is a million pixels along an axis.
         png_set_user_limits(state_->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
         png_read_info(state_->png, state_->info);
     });

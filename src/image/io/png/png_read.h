@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-#include "image/io/memory_bound.h"
+#include "image/io/rows/memory_bound.h"
 
 namespace limpid::image {
 

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "image/io/temp_folder.h"
-#include "image/io/texture_decode.h"
+#include "image/io/texture/texture_decode.h"
 
 namespace limpid::image {
 namespace {

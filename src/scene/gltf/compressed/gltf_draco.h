@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/gltf/gltf_json.h"
+#include "scene/gltf/document/gltf_json.h"
 
 namespace limpid::scene::gltf {
 

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "scene/gltf/compressed/gltf_draco.h"
-#include "scene/gltf/gltf_access.h"
-#include "scene/gltf/gltf_document.h"
+#include "scene/gltf/document/gltf_access.h"
+#include "scene/gltf/document/gltf_document.h"
 
 namespace limpid::scene::gltf {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/gltf/gltf_json.h"
+#include "scene/gltf/document/gltf_json.h"
 
 namespace limpid::scene::gltf {
 

@@ -9,9 +9,9 @@
 #include <random>
 
 #include "base/log.h"
-#include "scene/gltf/gltf_access.h"
-#include "scene/gltf/gltf_document.h"
-#include "scene/model/loader_test_files.h"
+#include "scene/gltf/document/gltf_access.h"
+#include "scene/gltf/document/gltf_document.h"
+#include "scene/load/loader_test_files.h"
 
 namespace limpid::scene::test {
 namespace {

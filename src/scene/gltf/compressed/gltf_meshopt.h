@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/gltf/gltf_json.h"
+#include "scene/gltf/document/gltf_json.h"
 
 namespace limpid::scene::gltf {
 

@@ -1,0 +1,67 @@
+// A scene that is being read and built on a thread of its own, while another one is shown.
+#pragma once
+
+#include <functional>
+#include <future>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "scene/device/scene_data.h"
+#include "scene/load/scene_source.h"
+
+namespace limpid::studio {
+
+/// Returns a complete scene (scene/prepare/prepare.h). Throws InputError, UsageError and Cancelled.
+using SceneLoader = std::function<scene::Scene(const scene::SceneSource& source, const Progress& progress)>;
+
+struct LoadedScene {
+    scene::Scene scene;
+    scene::SceneData data;
+};
+
+class SceneLoading {
+  public:
+    enum class Why { First, Opened, Relit };  ///< Relit: the same scene with other lights
+    struct Order {
+        scene::SceneSource source;
+        Why why = Why::Opened;
+        std::optional<std::string>
+            clip;             ///< argument for chooseClip(), if the scene has clips; none: no clip
+        std::string message;  ///< for the user, when it is done
+    };
+
+    /// `load` outlives this.
+    explicit SceneLoading(const SceneLoader& load) : load_(load) {}
+    /// Gives up what is being loaded.
+    ~SceneLoading() { cancel(); }
+    SceneLoading(const SceneLoading&) = delete;
+    SceneLoading& operator=(const SceneLoading&) = delete;
+
+    /// Begins; what was being loaded is given up.
+    void begin(Order order);
+    /// Nothing waits for what is given up: its thread ends at its next step.
+    void cancel();
+    explicit operator bool() const { return order_.has_value(); }
+    const Order& order() const { return *order_; }
+    bool isFirst() const { return order_ && order_->why == Why::First; }
+    bool isDone() const;
+    int percent() const { return static_cast<int>(100.0 * progress_.done()); }
+    /// Waits for the scene and returns it. Throws what the loader threw, and Error. Nothing is being loaded
+    /// afterwards.
+    LoadedScene take();
+
+  private:
+    const SceneLoader& load_;
+    std::optional<Order> order_;
+    Progress progress_;
+    std::future<LoadedScene> scene_;
+    std::vector<std::future<LoadedScene>> cancelled_;  ///< their threads still run
+};
+
+/// Loads a scene, starts its clip and builds its trees and tables. Throws what the loader throws, Error and
+/// Cancelled.
+LoadedScene loadScene(const SceneLoader& load, const SceneLoading::Order& order, const Progress& progress);
+
+}  // namespace limpid::studio
