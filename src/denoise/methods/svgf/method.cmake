@@ -1,4 +1,4 @@
-set(SOURCES svgf.cpp svgf_lags.cpp)
+set(SOURCES svgf.cpp svgf_lags.cpp svgf_parameters.cpp)
 set(SHADERS
   shaders/svgf_antilag.comp shaders/svgf_antilag_buffers.comp shaders/svgf_lags.comp
   shaders/svgf_last_level.comp shaders/svgf_level.comp shaders/svgf_reproject.comp
