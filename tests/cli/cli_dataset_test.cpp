@@ -1,6 +1,7 @@
 // Tests `limpid dataset`: the files do not depend on the shards, damaged ones are rendered again, and a
 // furnace has its known brightness.
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -105,7 +106,7 @@ TEST_F(CliDatasetTest, AFurnaceIsAsBrightAsItMustBe) {
 TEST_F(CliDatasetTest, AClipHasWhatAFilterOfAccumulatedLightSees) {
     expect(
         "dataset --device cpu --rooms 0 --scene builtin:furnace --width 24 --height 16 --samples 1 "
-        "--reference-samples 64 --sequence 1,3 -o '" +
+        "--reference-samples 64 --sequence 1,3 --picture-height 32 -o '" +
             path("data") + "'",
         0, "manifest");
     const auto tensors = neural::readTensorFile(path("data/examples.00000.safetensors")).tensors;
@@ -113,6 +114,9 @@ TEST_F(CliDatasetTest, AClipHasWhatAFilterOfAccumulatedLightSees) {
     const auto mean = [&](const std::string& name) { return meanOf(tensors.at("000000/3/" + name)); };
     EXPECT_EQ(tensors.at("000000/1/diffuse").shape, (std::vector<uint64_t>{4, 16, 24}));
     EXPECT_EQ(tensors.at("000000/1/camera").shape, (std::vector<uint64_t>{4, 3}));
+    const std::vector<float> camera = valuesOf(tensors.at("000000/1/camera"));
+    EXPECT_NEAR(std::hypot(camera[3], camera[4], camera[5]), 0.5 * std::tan(0.5),
+                1e-4);                            // upwards, half as far
     EXPECT_NEAR(mean("reference"), 1.996, 0.01);  // of which 1 is emission
     EXPECT_NEAR(mean("albedo"), 0.5, 1e-3);
     // The fourth channel is 1.

@@ -21,6 +21,8 @@ class Dataset:
     def __init__(self, folder, samples, device="cpu"):
         with open(os.path.join(folder, "manifest.json")) as stream:
             self.manifest = json.load(stream)
+        if "sequence" in self.manifest["dataset"]:
+            raise ValueError(f"{folder} has clips (limpid dataset --sequence), no stills")
         if samples not in self.manifest["dataset"]["samples"]:
             raise ValueError(f"{folder} has pictures of {self.manifest['dataset']['samples']} samples, none of {samples}")
         self.folder, self.device = folder, torch.device(device)

@@ -41,6 +41,7 @@ struct DatasetOptions {
     std::vector<std::string> scenes;
     uint32_t rooms = 100, stillLifes = 0, perFile = 8;
     std::vector<uint32_t> sequence;  ///< the frames of each clip that are stored; empty: stills
+    uint32_t pictureHeight = 0;      ///< clips show the middle of a picture of this height; 0: all of it
     ExampleSettings example;
 };
 
@@ -88,7 +89,10 @@ class Dataset {
                     {"height", o_.example.extent.height},
                     {"samples", o_.example.samples},
                     {"reference_samples", o_.example.referenceSamples}};
-        if (!o_.sequence.empty()) result["sequence"] = o_.sequence;
+        if (!o_.sequence.empty()) {
+            result["sequence"] = o_.sequence;
+            result["picture_height"] = o_.pictureHeight;
+        }
         return result;
     }
 
@@ -113,6 +117,7 @@ class Dataset {
         json list = json::array();
         for (uint64_t example = number * o_.perFile;
              example < std::min(examples(), (number + 1) * o_.perFile); ++example) {
+            if (ranks()) ranks()->beat();
             scene::Scene scene = scene::openScene({.scene = sceneOf(example)});
             if (!o_.sequence.empty() && !scene.rig.clips.empty()) scene::chooseClip(scene, "");
             const scene::SceneData data = scene::buildSceneData(scene);
@@ -162,6 +167,18 @@ class Dataset {
         return numberFrom(o_.example.seed, purpose, example) / 4294967296.0;
     }
 
+    /// The scene's camera, so that things have the size in pixels that they have in the whole picture:
+    /// filters depend on it.
+    scene::Camera cameraOf(const scene::Scene& scene) const {
+        scene::Camera camera = scene.cameras.front();
+        const float part = o_.pictureHeight == 0 ? 1.0f
+                                                 : static_cast<float>(o_.example.extent.height) /
+                                                       static_cast<float>(o_.pictureHeight);
+        camera.verticalFov = 2.0f * std::atan(part * std::tan(0.5f * camera.verticalFov));
+        camera.halfHeight *= part;
+        return camera;
+    }
+
     /// A camera that orbits, drives or shakes, up to four times faster or slower than usual.
     json addMoving(gpu::Device& device, scene::GpuScene& gpuScene, const scene::Scene& scene,
                    const scene::SceneData& data, uint64_t example, neural::TensorFile& result) const {
@@ -175,7 +192,7 @@ class Dataset {
         const SequenceTiming timing{
             .framesPerSecond = 30.0 * std::exp2(4.0 * fraction("speed", example) - 2.0),
             .start = 2.0 * fraction("start", example)};
-        const scene::Camera& camera = scene.cameras.front();
+        const scene::Camera camera = cameraOf(scene);
         const Sequence sequence(
             scene, data, camera,
             scene::builtinCameraPath(path, scene, camera, timing.timeOf(o_.sequence.back() + 1)), timing);
@@ -282,6 +299,12 @@ void addDatasetCommand(CLI::App& app) {
                      "comma-separated (1,3,7,15); with one number of --samples")
         ->delimiter(',')
         ->check(CLI::Range(0, 100000));
+    command
+        ->add_option(
+            "--picture-height", o->pictureHeight,
+            "With --sequence: clips show the middle of a picture of this height, pixels (that of the "
+            "clips)")
+        ->check(CLI::Range(1, 16384));
     command->add_option("--shard", o->shard,
                         "I/N: write the I-th of N parts only; existing files are kept (1/1)");
     addDeviceOptions(*command, o->device);

@@ -121,6 +121,7 @@ void addClip(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequen
     for (uint32_t frame = 0; frame <= settings.frames.back(); ++frame) {
         const Moment moment = sequence.moment(frame, settings.extent);
         noisy.render(moment);
+        if (ranks()) ranks()->beat();
         if (!std::ranges::binary_search(settings.frames, frame)) continue;
         const std::string prefix = fmt::format("{}/{}/", name, frame);
         addFrame(device, noisy, prefix, file);

@@ -24,10 +24,10 @@ struct ClipSettings {
 /// Renders the frames from 0 on, filters them by SVGF with its defaults, and adds tensors (channels, rows,
 /// columns) of halves to `file`, all finite. For each stored frame F and each SIGNAL of "diffuse" and
 /// "specular":
-/// - "NAME/F/SIGNAL" (4): accumulated light without albedo, and the expected deviation of its luminance;
-/// below
-///   0 where nothing is seen;
-/// - "NAME/F/SIGNAL.first" (4): the same after the first level of the filter;
+/// - "NAME/F/SIGNAL" (4): accumulated light without albedo, and the expected deviation of its luminance,
+///   below 0 where nothing is seen;
+/// - "NAME/F/SIGNAL.first" (4): the same after the first level of the filter, or where the history is short
+///   after "svgf/young";
 /// - "NAME/F/SIGNAL.past" (3): stabilised light of the frame before;
 /// - "NAME/F/SIGNAL.frames" (1): the length of the history;
 /// - "NAME/F/LAYER" with the layers albedo, albedoSpecular, emission, normal (3), depth, roughness (1);
