@@ -96,9 +96,10 @@ class DeviceTest(unittest.TestCase):
     def test_pipeline_cache_comes_back(self):
         limpid.Denoiser(8, 8, "temporal", device=device())
         data = device().pipeline_cache()
-        self.assertIsInstance(data, bytes)
+        self.assertGreater(len(data), 1000)  # more than a header: pipelines
         other = limpid.Device(os.environ.get("LIMPID_TEST_DEVICE", "cpu"))
         other.load_pipeline_cache(data)
+        self.assertGreater(len(other.pipeline_cache()), 1000)
         other.load_pipeline_cache(b"damaged")
 
 
@@ -351,7 +352,7 @@ class DenoiseTest(unittest.TestCase):
     def test_another_thread_may_resize(self):
         denoiser = limpid.Denoiser(WIDTH, HEIGHT, "temporal", device=device())
         small, large = {name: value[:4, :8] for name, value in still().items()}, still()
-        done = threading.Event()
+        done, successes = threading.Event(), 0
 
         def resize():
             while not done.wait(0.001):
@@ -364,11 +365,16 @@ class DenoiseTest(unittest.TestCase):
             for inputs in 20 * [small, large]:
                 try:
                     self.assertEqual(denoiser.denoise(**inputs).shape, inputs["radiance"].shape)
+                    successes += 1
                 except ValueError:
                     pass  # the denoiser had the other size
         finally:
             done.set()
             thread.join()
+        self.assertGreater(successes, 0)
+        denoiser.resize(WIDTH, HEIGHT)
+        fresh = limpid.Denoiser(WIDTH, HEIGHT, "temporal", device=device())
+        np.testing.assert_array_equal(denoiser.denoise(**large, reset=True), fresh.denoise(**large))
 
     def test_other_threads_run_meanwhile(self):
         # Counts while the device works; if the GIL were held, it would barely advance.
@@ -586,7 +592,8 @@ class RenderTest(unittest.TestCase):
                 f["diffuse"], f["normal"], f["depth"], specular=f["specular"], emission=f["emission"],
                 albedo=f["albedo"], albedo_specular=f["albedo_specular"], motion=f["motion"],
                 previous_normal=f["previous_normal"], id=f["id"], view=f["view"], projection=f["projection"])
-        self.assertLess(np.isfinite(f["motion"]).all() and np.abs(f["motion"][..., :2]).min(), 1e9)
+        self.assertTrue(np.isfinite(f["motion"]).all())
+        self.assertLess(np.abs(f["motion"][..., :2]).min(), 48)
         before, after = limpid.compare(f["color"], truth), limpid.compare(clean, truth)
         self.assertGreater(after["psnr"], before["psnr"] + 6, (before, after))
         self.assertLess(after["flip"], before["flip"])

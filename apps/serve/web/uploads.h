@@ -28,7 +28,7 @@ class Upload {
     Upload(const Upload&) = delete;
     Upload& operator=(const Upload&) = delete;
 
-    /// False: more than was announced, or the disk is full.
+    /// False: more than was announced. A full disk shows in Uploads::keep().
     bool write(std::span<const std::byte> bytes);
     bool isComplete() const { return left_ == 0; }
     const std::filesystem::path& file() const { return file_; }

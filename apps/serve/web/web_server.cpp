@@ -86,9 +86,9 @@ struct DestroyContext {
     void operator()(lws_context* context) const { lws_context_destroy(context); }
 };
 
-/// Runs a callback of libwebsockets. Its functions are C, which no exception may pass: one is logged, a
-/// request without an answer gets one, and the connection is closed. What cannot even be logged ends the
-/// program.
+/// Runs a callback of libwebsockets. Its functions are C, which no exception may pass: one is logged, and the
+/// connection is closed. At its head or its end a request gets an answer first; within its body, and where a
+/// WebSocket is asked for, it gets none. What cannot even be logged ends the program.
 template <typename Action>
 int guarded(lws* wsi, lws_callback_reasons reason, const Action& action) noexcept {
     unsigned status = HTTP_STATUS_INTERNAL_SERVER_ERROR;
@@ -204,9 +204,11 @@ int WebServer::Impl::answer(lws* wsi, const char* type, Bytes body, unsigned sta
     return 0;
 }
 
-/// Outside of a callback for this connection, which a fault would end.
+/// Outside of a callback for this connection, which a fault would end. Throws nothing, so that others get
+/// their answers.
 void WebServer::Impl::answerLater(lws* wsi, const char* type, const Bytes& body, unsigned status) {
-    if (answer(wsi, type, body, status) != 0)
+    const auto begin = [&] { return answer(wsi, type, body, status); };
+    if (guarded(wsi, LWS_CALLBACK_HTTP_WRITEABLE, begin) != 0)
         lws_set_timeout(wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
 }
 
@@ -258,7 +260,7 @@ int WebServer::Impl::askForStill(lws* wsi) {
     // The library's own limit would close the connection without an answer.
     lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, static_cast<int>(settings.stillSeconds) + 10);
     const std::lock_guard lock(stillMutex);
-    if (std::exchange(stillAsked, true)) return 0;
+    if (stillAsked) return 0;
     streamer->requestStill([this](Bytes bytes) {
         {
             const std::lock_guard inner(stillMutex);
@@ -267,6 +269,7 @@ int WebServer::Impl::askForStill(lws* wsi) {
         }
         wake();
     });
+    stillAsked = true;  // not if that throws: nobody else would ask again
     return 0;
 }
 

@@ -56,6 +56,8 @@ class MpiTransport final : public Transport {
     bool poll(int& from, std::vector<std::byte>& bytes) override {
         const std::lock_guard lock(mpi_);
         forgetSent();
+        // If their senders go on after all, what follows must not count as a part of their next messages.
+        forgotten_.remove_if(goOn);
         if (const auto small = probe(smallTag)) {
             from = small->MPI_SOURCE;
             bytes = receive(*small);
@@ -167,7 +169,9 @@ class MpiTransport final : public Transport {
         if (incoming_.size() >= maxIncoming) return;
         const auto first = probe(sizeTag);
         const auto isOfSender = [&](const Incoming& message) { return message.from == first->MPI_SOURCE; };
-        if (!first || std::ranges::any_of(incoming_, isOfSender)) return;
+        if (!first || std::ranges::any_of(incoming_, isOfSender) ||
+            std::ranges::any_of(forgotten_, isOfSender))
+            return;
         uint64_t size = 0;
         std::memcpy(&size, receive(*first).data(), sizeof size);
         incoming_.push_back({first->MPI_SOURCE, std::vector<std::byte>(size), 0, {}});
@@ -194,7 +198,7 @@ class MpiTransport final : public Transport {
     std::mutex mpi_, sending_;
     std::list<Sent> sent_;
     std::list<Incoming> incoming_;   ///< at most one of each sender
-    std::list<Incoming> forgotten_;  ///< of processes that hang
+    std::list<Incoming> forgotten_;  ///< of processes that hang; received to their ends, and discarded
 };
 
 }  // namespace

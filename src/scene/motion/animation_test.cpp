@@ -199,7 +199,7 @@ TEST_F(AnimationFile, RefusesChannelsThatMultiplyTheirData) {
     const json channel = channels[0];
     channels = json(3, channel);
     EXPECT_EQ(loadScene(file.save(folder)).rig.clips[0].channels.size(), 3u);
-    channels = json(1500, channel);
+    channels = json(2500, channel);
     expectRefused(file.save(folder), "too many times and values");
 }
 

@@ -79,7 +79,7 @@ class CameraReader {
         const auto found = object_.find(key);
         if (found == object_.end() || found->is_null()) return std::nullopt;
         const auto number = finiteFloat(*found);
-        if (!number) fail(fmt::format("has a '{}' that is no number", key));
+        if (!number) fail(fmt::format("has a '{}' that is no number or is too large", key));
         return number;
     }
 

@@ -149,7 +149,8 @@ Assignments readAssignments(const std::filesystem::path& file) {
         const auto isNumber = [](const auto& item) { return finiteFloat(item).has_value(); };
         const bool flat = value.is_string() || isNumber(value) ||
                           (value.is_array() && std::all_of(value.begin(), value.end(), isNumber));
-        if (!flat) throw InputError(file, fmt::format("'{}' is neither a text nor a number", key));
+        if (!flat)
+            throw InputError(file, fmt::format("'{}' is neither a text nor a number, or is too large", key));
         result.emplace_back(key, textOf(value));
     }
     return result;

@@ -381,6 +381,25 @@ TEST_F(RecogniseTest, AssignmentsWin) {
               "albedo.RGB - 0.5 * My.Tex.RGB");
 }
 
+TEST_F(RecogniseTest, FilesOfAssignmentsHoldTextsAndNumbers) {
+    const auto read = [&](const std::string& text) {
+        image::test::put(folder_ / "map.json", text);
+        return readAssignments(folder_ / "map.json");
+    };
+    const Assignments expected = {
+        {"albedo", "My.Tex.RGB"}, {"depth.far", "1000"}, {"motion.scale", "-1,0.5"}};
+    EXPECT_EQ(read(R"({"albedo": "My.Tex.RGB", "depth.far": 1e3, "motion.scale": [-1, 0.5]})"), expected);
+    for (const char* wrong : {"true", "1e300", "[1, -1e300]", R"(["a"])", "null", "{}"}) {
+        try {
+            read(std::string(R"({"depth.far": )") + wrong + "}");
+            ADD_FAILURE() << wrong;
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(),
+                        HasSubstr("'depth.far' is neither a text nor a number, or is too large"));
+        }
+    }
+}
+
 TEST_F(RecogniseTest, WrongAssignmentsAreRefused) {
     const image::ExrDocument document = file({{.channels = names("R G B v.X v.Y")}});
     const auto messageOf = [&](const std::string& key, const std::string& value) -> std::string {

@@ -46,6 +46,32 @@ TEST_F(ShotRequestTest, NoOutputMayBeAnInput) {
     EXPECT_NE(faultOf("b.%d.exr").find("the output is the input"), std::string::npos);
 }
 
+TEST_F(ShotRequestTest, NoOutputMayBeAFrameThatIsLeftOut) {
+    request_.frames = "1-2";
+    EXPECT_EQ(faultOf("b.%d.exr"), "none");
+    // Frame 2 would replace frame 12.
+    EXPECT_NE(faultOf("a.1%d.exr").find("the output is the input"), std::string::npos);
+    EXPECT_EQ(faultOf("a.9%d.exr"), "none");
+    std::filesystem::create_symlink("a.7.exr", folder_ / "b.2.exr");
+    EXPECT_NE(faultOf("b.%d.exr").find("the output is the input"), std::string::npos);
+    // This output is not written.
+    std::filesystem::create_symlink("a.7.exr", folder_ / "c.7.exr");
+    EXPECT_EQ(faultOf("c.%d.exr"), "none");
+    image::test::put(folder_ / "albedo.11.exr", "");
+    request_.files = {"albedo=" + path("albedo.%d.exr"), "normal=" + path("none/normal.%d.exr")};
+    EXPECT_EQ(faultOf("b.%03d.exr"), "none");
+    EXPECT_NE(faultOf("albedo.1%d.exr").find("the output is the file of --file albedo"), std::string::npos);
+}
+
+TEST_F(ShotRequestTest, LinksToNoFileAreNoOutputs) {
+    std::filesystem::remove(folder_ / "a.3.exr");
+    std::filesystem::create_symlink("a.3.exr", folder_ / "a.3.exr");
+    std::filesystem::create_symlink("normal.exr", folder_ / "normal.exr");
+    request_.files = {"normal=" + path("normal.exr")};
+    EXPECT_EQ(faultOf("b.%d.exr"), "none");
+    EXPECT_NE(faultOf("a.1%d.exr").find("the output is the input"), std::string::npos);
+}
+
 TEST_F(ShotRequestTest, NoOutputMayBeAnAttachedFile) {
     request_.files = {"albedo=" + path("albedo.%d.pfm"), "normal=" + path("normal.exr")};
     EXPECT_EQ(faultOf("b.%d.exr"), "none");

@@ -223,22 +223,63 @@ TEST_F(ExrDocumentDamaged, AbsurdSizesAreRefusedWithoutAllocatingThem) {
     EXPECT_LT(peakOfProcess() - before, size_t{200} << 20);
 }
 
+/// Like patched(), but all of them in one copy.
+std::string patchedTogether(std::string file, const std::string& name, const std::string& type,
+                            const std::vector<int32_t>& numbers) {
+    const std::string key = name + '\0' + type + '\0';
+    for (size_t at = file.find(key); at != std::string::npos; at = file.find(key, at + 1))
+        std::memcpy(file.data() + at + key.size() + 4, numbers.data(), 4 * numbers.size());
+    return file;
+}
+
+/// Returns why the file is refused, or "none".
+std::string faultOf(const std::string& bytes) {
+    try {
+        ExrDocument::decode(test::toByteVector(bytes), "frame.exr");
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
 TEST_F(ExrDocumentDamaged, TheFrameOfAPartThatCannotBeReadIsCheckedToo) {
     constexpr int32_t far = 1 << 27;
+    const std::vector<std::pair<std::vector<int32_t>, std::string>> windows = {
+        {{0, 0, 16383, 16383}, "has a frame of 16384x16384 pixels around 20x18 stored ones"},
+        {{0, 0, far, 17}, "pixels are accepted"},
+        {{0, 0, far, far}, "pixels are accepted"},
+        {{5, 5, 4, 4}, "has an empty picture window"},
+        {{0, 0, 20, 17}, "none"}};
     Imf::Header luma = small("luma", Imf::SCANLINEIMAGE, Imf::NO_COMPRESSION);
     luma.channels().insert("RY", Imf::Channel(Imf::HALF, 2, 2));
+    const Imf::Header rows = small("rows", Imf::SCANLINEIMAGE, Imf::ZIP_COMPRESSION);
     const size_t before = peakOfProcess();
     for (const Imf::Header& first : {small("deep", Imf::DEEPSCANLINE, Imf::ZIPS_COMPRESSION), luma}) {
-        writeParts(path(), {first, small("rows", Imf::SCANLINEIMAGE, Imf::ZIP_COMPRESSION)});
-        const std::string whole = test::get(path());
-        EXPECT_NO_THROW(ExrDocument::decode(test::toByteVector(whole), "whole.exr"));
-        for (const std::vector<int32_t>& window : std::vector<std::vector<int32_t>>{
-                 {0, 0, 16383, 16383}, {0, 0, far, 17}, {0, 0, far, far}, {0, 0, 20, 17}}) {
-            for (const std::string& bytes : patched(whole, "displayWindow", "box2i", window))
-                EXPECT_THROW(ExrDocument::decode(test::toByteVector(bytes), "frame.exr"), InputError);
+        for (const bool alone : {true, false}) {
+            writeParts(path(), alone ? std::vector{first} : std::vector{first, rows});
+            const std::string whole = test::get(path());
+            EXPECT_EQ(faultOf(whole), "none");
+            for (const auto& [window, fault] : windows) {
+                const std::string found = faultOf(patchedTogether(whole, "displayWindow", "box2i", window));
+                EXPECT_NE(found.find(fault), std::string::npos) << found << ", alone: " << alone;
+            }
         }
+        for (const std::string& bytes : patched(test::get(path()), "displayWindow", "box2i", {0, 0, 20, 17}))
+            EXPECT_NE(faultOf(bytes).find("different display windows"), std::string::npos);
     }
     EXPECT_LT(peakOfProcess() - before, size_t{200} << 20);
+}
+
+TEST_F(ExrDocumentDamaged, APartThatCannotBeReadMayBeASmallCrop) {
+    const Box2i frame({0, 0}, {4199, 4199});
+    Imf::Header deep = small("deep", Imf::DEEPSCANLINE, Imf::ZIPS_COMPRESSION);
+    Imf::Header rows = small("rows", Imf::SCANLINEIMAGE, Imf::ZIP_COMPRESSION);
+    deep.displayWindow() = rows.displayWindow() = frame;
+    rows.dataWindow() = Box2i({0, 0}, {599, 599});
+    writeParts(path(), {deep, rows});
+    EXPECT_EQ(faultOf(test::get(path())), "none");
+    writeParts(path(), {deep});
+    EXPECT_NE(faultOf(test::get(path())).find("around 20x18 stored ones"), std::string::npos);
 }
 
 }  // namespace

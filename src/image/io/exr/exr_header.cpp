@@ -266,6 +266,17 @@ void removeMisleading(Imf::Header& header, int version, bool only) {
     if (only && header.hasChunkCount()) removeAttribute(header, "chunkCount");
 }
 
+/// If no part can be read, compares the frame with what the parts store. Else a part that can be read has
+/// been compared with it, and others may be small crops.
+void checkUnreadable(const std::vector<ExrPartHeader>& parts, size_t fileBytes, const fs::path& name) {
+    const auto isReadable = [](const ExrPartHeader& part) { return part.unreadable.empty(); };
+    if (std::ranges::any_of(parts, isReadable)) return;
+    constexpr uint64_t oneFloat = 4;
+    for (const ExrPartHeader& part : parts)
+        checkDisplay(sizeOf(part.header.dataWindow(), name), sizeOf(part.header.displayWindow(), name),
+                     oneFloat, fileBytes, name);
+}
+
 /// Reads the magic number and returns the version field.
 int checkVersion(ExrMemoryStream& stream, std::span<const std::byte> bytes, const fs::path& name) {
     int magic = 0, version = 0;
@@ -331,9 +342,9 @@ std::vector<ExrPartHeader> checkExrParts(std::span<const std::byte> bytes, const
         part.header.readFrom(stream, version);
         // OpenEXR computes with the windows, and ExrDocument::width() is that of the first part, even if its
         // pixels cannot be read.
-        constexpr uint64_t oneFloat = 4;
-        checkDisplay(sizeOf(part.header.dataWindow(), name), sizeOf(part.header.displayWindow(), name),
-                     oneFloat, bytes.size(), name);
+        sizeOf(part.header.dataWindow(), name);
+        const Size display = sizeOf(part.header.displayWindow(), name);
+        checkDimensions(name, display.width, display.height, bytes.size(), maxPixels);
         if (!parts.empty() && part.header.displayWindow() != parts.front().header.displayWindow())
             throw InputError(name, "has parts with different display windows");
         removeMisleading(part.header, version, count == 1);
@@ -341,6 +352,7 @@ std::vector<ExrPartHeader> checkExrParts(std::span<const std::byte> bytes, const
         if (part.unreadable.empty()) part.frame = checkPart(part.header, version, bytes.size(), name);
         parts.push_back(std::move(part));
     }
+    checkUnreadable(parts, bytes.size(), name);
     return parts;
 }
 

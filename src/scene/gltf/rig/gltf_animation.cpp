@@ -10,11 +10,11 @@
 namespace limpid::scene::gltf {
 namespace {
 
-/// The numbers (times and values) that the clips of a document may have: about as many as its buffer views
-/// could, at their highest compression.
+/// The numbers (times and values) that the clips of a document may have: at least as many as its buffer views
+/// could hold at their highest compression, with one byte for each number, up to a bound on the memory.
 uint64_t maxNumbers(const Document& document) {
-    constexpr uint64_t floor = uint64_t{1} << 24, perByte = 16, most = uint64_t{1} << 28;
-    return std::min(floor + perByte * document.byteCount(), most);
+    constexpr uint64_t floor = uint64_t{1} << 24, most = uint64_t{1} << 28;
+    return std::min(floor + Document::decodedPerByte * document.byteCount(), most);
 }
 
 /// Returns the accessor of a sampler's input or output.
