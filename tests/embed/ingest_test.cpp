@@ -98,6 +98,42 @@ TEST_F(IngestTest, MotionOfTheCameraFollowsFromItsMatrices) {
     }
 }
 
+/// Rays through another point of each pixel see other points of a floor, which move as those in the centres
+/// do.
+TEST_F(IngestTest, MotionHasNoJitter) {
+    CameraParams now{.origin = {0, 2, 0}, .forward = {0, -1, 0}, .right = {1.5f, 0, 0}, .up = {0, 0, -1}};
+    Given given;
+    given.frame.width = width;
+    given.frame.height = height;
+    given.frame.camera = given.before = now;
+    given.frame.diffuse.assign(size_t{4} * width * height, 0.5f);
+    given.normal = given.depth = given.frame.diffuse;
+    limpid_camera camera = matricesOf(now, now);
+    camera.jitter[0] = 0.375f;
+    camera.jitter[1] = -0.25f;
+    const auto distanceTo = [&](double x, double y) {
+        const double sx = 2 * (x + 0.5) / width - 1, sy = 1 - 2 * (y + 0.5) / height;
+        return 2.0 * std::sqrt(1.0 + 2.25 * sx * sx + sy * sy);
+    };
+    for (size_t p = 0; p < size_t{width} * height; ++p) {
+        const auto x = static_cast<double>(p % width), y = static_cast<double>(p / width);
+        given.normal[4 * p] = given.normal[4 * p + 2] = 0.0f;
+        given.normal[4 * p + 1] = 1.0f;
+        given.depth[4 * p] = static_cast<float>(distanceTo(x + 0.375, y - 0.25));
+    }
+    for (const float shift : {0.0f, 0.2f}) {
+        const CameraParams before{
+            .origin = {shift, 2, 0}, .forward = now.forward, .right = now.right, .up = now.up};
+        copyMatrix(viewOf(before), camera.previous_view);
+        const std::vector<float> motion = run(given, {}, false, &camera).motion;
+        const double expected = -0.5 * shift / (2.0 * 1.5) * width;  // of a plane at a distance of 2
+        for (size_t p = 0; p < size_t{width} * height; ++p) {
+            ASSERT_NEAR(motion[4 * p], expected, 2e-3) << "pixel " << p;
+            ASSERT_NEAR(motion[4 * p + 1], 0.0, 2e-3) << "pixel " << p;
+        }
+    }
+}
+
 /// Where nothing is hit, motion is that of a sky at infinity, which anti-aliasing follows.
 TEST_F(IngestTest, TheSkyMovesAsTheCameraTurns) {
     Given given = still();

@@ -18,13 +18,13 @@ float previousDistance(MotionEncoding encoding, vec3 position) {
     return before.orthographic != 0u ? dot(toPoint, before.forward) : length(toPoint);
 }
 
-/// The motion in pixels of a point, or of a direction (w 0: the sky), that stands still; 0 if it was behind the
-/// previous eye.
+/// The motion in pixels of a point, or of a direction (w 0: the sky), that stands still and that the jittered ray of
+/// `pixel` sees; 0 if it was behind the previous eye.
 vec4 motionOfStill(MotionEncoding encoding, vec4 point, vec2 pixel, vec2 size) {
     const float w = dot(encoding.previousClipW, point);
     if (!(w > 0.0)) return vec4(0.0);
     const vec2 before = vec2(dot(encoding.previousClipX, point), dot(encoding.previousClipY, point)) / w;
-    return vec4((0.5 * before + 0.5) * size - pixel - 0.5, 0.0, 1.0);
+    return vec4((0.5 * before + 0.5) * size - (pixel + 0.5 + encoding.jitter), 0.0, 1.0);
 }
 
 /// `texel` is one of the program's, `distance` that of the pixel's surface; 0: nothing is seen.

@@ -96,7 +96,7 @@ vec4 reflectionMotionAt(ivec2 at) {
     const vec4 still = motionOfStill(params.motion, vec4(own.position, 1.0), vec2(at), size);
     const vec4 moved = motionOfStill(params.motion, image, vec2(at), size);
     if (moved.w == 0.0 || still.w == 0.0 || length(ownMotion.xy - still.xy) > STILL) return vec4(0.0);
-    const float before = previousReflector(own, vec2(at) + moved.xy);
+    const float before = previousReflector(own, vec2(at) + params.motion.jitter + moved.xy);
     return before > 0.0 ? vec4(moved.xy, before - distance, 1.0) : vec4(0.0);
 }
 
