@@ -109,7 +109,7 @@ class YardstickTest : public RenderTest {
 
     /// Uses different seeds: the pictures only share their expectation.
     void compareMeans(const scene::Scene& scene) {
-        const RenderSettings ourSettings = settings(320, 180, 0), theirSettings = settings(320, 180, 7);
+        const RenderSettings ourSettings = settings(160, 90, 0), theirSettings = settings(160, 90, 7);
         constexpr uint32_t samples = 64;
         const scene::SceneData data = scene::buildSceneData(scene);
         const EmbreeScene embree(scene, data);

@@ -1,6 +1,6 @@
-// Tests what happens when the Vulkan device is lost: Limpid's calls report it, and all objects can still be
-// destroyed. The loss is simulated: functions between Limpid and the real driver return VK_ERROR_DEVICE_LOST
-// when the test asks for it.
+// Tests what happens when the Vulkan device is lost or its memory runs out: Limpid's calls report it, all
+// objects can still be destroyed, and once there is memory again, the pictures are the same as ever. The
+// failures are simulated: functions between Limpid and the real driver return them when the test asks for it.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -36,7 +36,9 @@ enum class Failing {
 constexpr int nothing = -1, everything = static_cast<int>(Failing::Count);
 constexpr int lastThatMakes = static_cast<int>(Failing::CreateShaderModule);
 std::atomic<int> lost = nothing;  ///< the function that reports the loss: a Failing, nothing or everything
-std::atomic<int> alive = 0;       ///< number of objects that were created and not yet destroyed
+std::atomic<int> spared = 0;      ///< so many of its calls still succeed
+std::atomic<VkResult> failure = VK_ERROR_DEVICE_LOST;
+std::atomic<int> alive = 0;  ///< number of objects that were created and not yet destroyed
 std::atomic<bool> reported = false;
 
 template <typename Function, Failing which>
@@ -45,9 +47,9 @@ template <typename... Args, Failing which>
 struct Fails<VkResult (*)(Args...), which> {
     inline static VkResult (*real)(Args...) = nullptr;
     static VkResult call(Args... args) {
-        if (lost == everything || lost == static_cast<int>(which)) {
+        if ((lost == everything || lost == static_cast<int>(which)) && spared-- <= 0) {
             reported = true;
-            return VK_ERROR_DEVICE_LOST;
+            return failure;
         }
         const VkResult result = real(args...);
         if (result == VK_SUCCESS && static_cast<int>(which) <= lastThatMakes) ++alive;
@@ -106,6 +108,7 @@ class DeviceLostTest : public VulkanProgramTest {
     }
     void TearDown() override {
         lost = nothing;
+        failure = VK_ERROR_DEVICE_LOST;
         destroyAll();
         VulkanProgramTest::TearDown();
     }
@@ -124,11 +127,24 @@ class DeviceLostTest : public VulkanProgramTest {
         limpid_device_destroy(std::exchange(adopted_, nullptr));
     }
 
+    void destroyLast() {
+        device().waitIdle();
+        limpid_denoiser_destroy(std::exchange(denoisers_.back(), nullptr));
+    }
+
+    /// Lets a function fail, after `calls` calls that succeed.
+    void fail(int function, int calls = 0) {
+        reported = false;
+        spared = calls;
+        lost = function;
+    }
+
     /// Records a frame and returns the result. The command buffer is submitted even after an error.
-    limpid_result record(limpid_denoiser* denoiser, int number) {
+    limpid_result record(limpid_denoiser* denoiser, int number, std::vector<float>* picture = nullptr) {
         const auto f = upload(SyntheticScene({}), number);
         limpid_result result = LIMPID_OK;
         run([&](VkCommandBuffer commands) { result = limpid_record(denoiser, commands, &f->frame); });
+        if (picture) *picture = pixels(*f);
         return result;
     }
 };
@@ -162,19 +178,64 @@ TEST_F(DeviceLostTest, WhereverAFrameStopsNothingIsLeft) {
     int met = 0;
     for (int function = 0; function < everything; ++function) {
         limpid_denoiser* denoiser = createTimed();
-        reported = false;
-        lost = function;
+        fail(function);
         const limpid_result first = record(denoiser, 0);
         const limpid_result second = first == LIMPID_OK ? record(denoiser, 1) : first;
         EXPECT_EQ(second, reported ? LIMPID_ERROR_DEVICE_LOST : LIMPID_OK) << "function " << function;
         met += reported;
         lost = nothing;
-        device().waitIdle();
-        limpid_denoiser_destroy(std::exchange(denoisers_.back(), nullptr));
+        destroyLast();
     }
     EXPECT_GE(met, 10) << "a frame calls more of them";
     destroyAll();
     EXPECT_EQ(alive, 0) << "objects are left";
+}
+
+/// A frame that fails, in the middle of a sequence, leaves the histories as they are.
+TEST_F(DeviceLostTest, AFrameWithoutMemoryCanBeRepeated) {
+    const std::vector<float> expected = denoiseSequence(createTimed(), SyntheticScene({}), 3);
+    failure = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    int met = 0;
+    for (const int firstToFail : {0, 1}) {
+        for (int function = 0; function < everything; ++function) {
+            limpid_denoiser* denoiser = createTimed();
+            std::vector<float> picture;
+            for (int number = 0; number < 3; ++number) {
+                if (number == firstToFail) {
+                    fail(function);
+                    const limpid_result result = record(denoiser, number);
+                    EXPECT_EQ(result, reported ? LIMPID_ERROR_OUT_OF_MEMORY : LIMPID_OK);
+                    lost = nothing;
+                    met += reported;
+                    if (!reported) continue;
+                }
+                ASSERT_EQ(record(denoiser, number, &picture), LIMPID_OK) << limpid_last_error();
+            }
+            EXPECT_EQ(picture, expected) << "function " << function << " in frame " << firstToFail;
+            destroyLast();
+        }
+    }
+    EXPECT_GE(met, 12) << "frames call more of them";
+}
+
+TEST_F(DeviceLostTest, AWarmUpWithoutMemoryChangesNothing) {
+    const std::vector<float> expected = denoiseSequence(createTimed(), SyntheticScene({}), 2);
+    failure = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    const auto f = upload(SyntheticScene({}), 0);
+    reported = true;
+    int calls = 0;
+    for (; reported; calls += 3) {
+        limpid_denoiser* denoiser = createTimed();
+        fail(static_cast<int>(Failing::AllocateMemory), calls);
+        run([&](VkCommandBuffer commands) {
+            const limpid_result result = limpid_warm_up(denoiser, commands, &f->frame);
+            EXPECT_EQ(result, reported ? LIMPID_ERROR_OUT_OF_MEMORY : LIMPID_OK);
+        });
+        lost = nothing;
+        EXPECT_EQ(denoiseSequence(denoiser, SyntheticScene({}), 2), expected) << calls << " allocations";
+        destroyLast();
+    }
+    EXPECT_GT(calls, 20) << "a warm-up makes more images";
 }
 
 TEST_F(DeviceLostTest, AdoptingALostDeviceFails) {

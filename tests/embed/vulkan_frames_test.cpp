@@ -1,6 +1,7 @@
 // Tests the C interface in a Vulkan program (vulkan_program.h).
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/embed/vulkan_program.h"
@@ -85,6 +86,49 @@ TEST_F(VulkanFramesTest, MakesAllPipelinesBeforehand) {
     }
 }
 
+/// The same with one signal, and the inputs that most programs have.
+TEST_F(VulkanFramesTest, MakesThePipelinesOfFewInputsBeforehand) {
+    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL,
+                                       LIMPID_METHOD_BILATERAL, LIMPID_METHOD_VISIBILITY}) {
+        limpid_denoiser_desc desc = {};
+        desc.method = method;
+        desc.signals = 1;
+        limpid_denoiser* denoiser = create(desc);
+        const size_t made = adopted_->device->pipelineCount();
+        const auto f = upload(SyntheticScene({}), 0);
+        for (const limpid_input missing :
+             {LIMPID_INPUT_SPECULAR, LIMPID_INPUT_EMISSION, LIMPID_INPUT_ALBEDO_SPECULAR,
+              LIMPID_INPUT_PREVIOUS_NORMAL, LIMPID_INPUT_ID})
+            f->frame.inputs[missing] = {};
+        run([&](VkCommandBuffer commands) {
+            EXPECT_EQ(limpid_record(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
+        });
+        EXPECT_EQ(adopted_->device->pipelineCount(), made) << method;
+    }
+}
+
+/// The previous matrices are only read when there is a history.
+TEST_F(VulkanFramesTest, NeedsPreviousMatricesOnlyForHistories) {
+    const auto f = upload(SyntheticScene({}), 0);
+    std::ranges::fill(f->frame.camera.previous_view, 0.0f);
+    std::ranges::fill(f->frame.camera.previous_projection, 0.0f);
+    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_BILATERAL}) {
+        limpid_denoiser_desc desc = {};
+        desc.method = method;
+        limpid_denoiser* denoiser = create(desc);
+        run([&](VkCommandBuffer commands) {
+            EXPECT_EQ(limpid_warm_up(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
+            EXPECT_EQ(limpid_record(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
+            const bool keeps = method == LIMPID_METHOD_SVGF;
+            EXPECT_EQ(limpid_record(denoiser, commands, &f->frame),
+                      keeps ? LIMPID_ERROR_INVALID_ARGUMENT : LIMPID_OK);
+            if (keeps) {
+                EXPECT_THAT(limpid_last_error(), HasSubstr("'previous_view' is singular"));
+            }
+        });
+    }
+}
+
 TEST_F(VulkanFramesTest, PicturesInHalvesAreThoseInFloatsRounded) {
     for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL,
                                        LIMPID_METHOD_BILATERAL, LIMPID_METHOD_VISIBILITY}) {
@@ -142,6 +186,63 @@ TEST_F(VulkanFramesTest, WarmUpsChangeNothing) {
     EXPECT_EQ(denoiseSequence(denoiser, scene, 3), denoiseSequence(create(), scene, 3));
 }
 
+TEST_F(VulkanFramesTest, PipelineCachesAreNotCutOff) {
+    create();
+    size_t size = 0;
+    ASSERT_EQ(limpid_device_pipeline_cache(adopted_, nullptr, &size), LIMPID_OK);
+    std::vector<char> bytes(size, 'x');
+    size_t room = size - 1;
+    EXPECT_EQ(limpid_device_pipeline_cache(adopted_, bytes.data(), &room), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(room, size);
+    EXPECT_EQ(bytes, std::vector<char>(size, 'x'));
+    EXPECT_EQ(limpid_device_pipeline_cache(adopted_, bytes.data(), &room), LIMPID_OK);
+}
+
+/// The program's loader, without some functions of Vulkan 1.1 or 1.3, as instances of older versions are.
+PFN_vkVoidFunction instanceOfVersion10(VkInstance instance, const char* name) {
+    return std::string_view(name) == "vkGetPhysicalDeviceFeatures2" ? nullptr
+                                                                    : gpu::systemLoader()(instance, name);
+}
+
+PFN_vkVoidFunction deviceOfVersion12(VkDevice, const char* name) {
+    if (std::string_view(name) == "vkCmdPipelineBarrier2") return nullptr;
+    // Any function will do: none of the device is called.
+    return reinterpret_cast<PFN_vkVoidFunction>(&deviceOfVersion12);
+}
+
+PFN_vkVoidFunction instanceOfVersion12(VkInstance instance, const char* name) {
+    if (std::string_view(name) == "vkGetDeviceProcAddr")
+        return reinterpret_cast<PFN_vkVoidFunction>(&deviceOfVersion12);
+    return gpu::systemLoader()(instance, name);
+}
+
+TEST_F(VulkanFramesTest, RefusesWhatCannotRunIt) {
+    limpid_vulkan_device_desc desc = {};
+    desc.get_instance_proc_addr = &instanceOfVersion10;
+    EXPECT_EQ(adopt(desc), LIMPID_ERROR_UNSUPPORTED);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("vkGetPhysicalDeviceFeatures2"));
+    desc.get_instance_proc_addr = &instanceOfVersion12;
+    EXPECT_EQ(adopt(desc), LIMPID_ERROR_UNSUPPORTED);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("vkCmdPipelineBarrier2"));
+    desc.get_instance_proc_addr = nullptr;
+    desc.queue_family = 99;
+    EXPECT_EQ(adopt(desc), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(adopted_, nullptr);
+}
+
+TEST_F(VulkanFramesTest, RefusesSizesThatTheDeviceDoesNotHave) {
+    limpid_denoiser* denoiser = create();
+    limpid_denoiser_desc desc = {sizeof desc};
+    desc.width = 32768;
+    desc.height = 1;
+    const limpid_result expected =
+        device().impl().context->limits().maxImageDimension2D < 32768 ? LIMPID_ERROR_UNSUPPORTED : LIMPID_OK;
+    limpid_denoiser* large = nullptr;
+    EXPECT_EQ(limpid_denoiser_create(adopted_, &desc, &large), expected);
+    EXPECT_EQ(limpid_denoiser_resize(denoiser, 1, 32768), expected);
+    limpid_denoiser_destroy(large);
+}
+
 TEST_F(VulkanFramesTest, DamagedPipelineCachesAreIgnored) {
     ASSERT_EQ(adopt({}), LIMPID_OK);  // a device without pipelines
     const std::string garbage(1000, 'x');
@@ -168,35 +269,63 @@ TEST_F(VulkanFramesTest, FollowsANewSize) {
     EXPECT_EQ(limpid_denoiser_resize(denoiser, 0, 5), LIMPID_ERROR_INVALID_ARGUMENT);
 }
 
-TEST_F(VulkanFramesTest, TakesMemoryFromTheCaller) {
-    struct Heap {
-        const gpu::Context* context;
-        int blocks = 0, freed = 0;
-    } heap{&program()};
-    limpid_vulkan_device_desc desc = {};
-    desc.memory_user = &heap;
-    desc.allocate = [](void* user, const VkMemoryRequirements* requirements, VkMemoryPropertyFlags properties,
-                       const char*, limpid_vulkan_memory* block) {
-        auto& from = *static_cast<Heap*>(user);
+/// An allocator of the program's: a block of its own for each request.
+struct Heap {
+    const gpu::Context* context;
+    bool maps = true;
+    int blocks = 0, freed = 0;
+
+    limpid_vulkan_device_desc described() {
+        limpid_vulkan_device_desc desc = {};
+        desc.memory_user = this;
+        desc.allocate = [](void* user, const VkMemoryRequirements* requirements,
+                           VkMemoryPropertyFlags properties, const char*, limpid_vulkan_memory* block) {
+            return static_cast<Heap*>(user)->allocate(*requirements, properties, *block);
+        };
+        desc.free = [](void* user, const limpid_vulkan_memory* block) {
+            auto& from = *static_cast<Heap*>(user);
+            from.context->vk().FreeMemory(from.context->device(), block->memory, nullptr);
+            ++from.freed;
+        };
+        return desc;
+    }
+
+  private:
+    VkResult allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags properties,
+                      limpid_vulkan_memory& block) {
         VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-        info.allocationSize = requirements->size;
-        const auto& types = from.context->memoryProperties();
-        while (!(requirements->memoryTypeBits >> info.memoryTypeIndex & 1) ||
+        info.allocationSize = requirements.size;
+        const auto& types = context->memoryProperties();
+        while (!(requirements.memoryTypeBits >> info.memoryTypeIndex & 1) ||
                (types.memoryTypes[info.memoryTypeIndex].propertyFlags & properties) != properties)
             ++info.memoryTypeIndex;
-        const gpu::DeviceFunctions& vk = from.context->vk();
-        const VkResult result = vk.AllocateMemory(vk.device, &info, nullptr, &block->memory);
-        if (result == VK_SUCCESS && (properties & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT))
-            vk.MapMemory(vk.device, block->memory, 0, VK_WHOLE_SIZE, 0, &block->mapped);
-        ++from.blocks;
+        const gpu::DeviceFunctions& vk = context->vk();
+        const VkResult result = vk.AllocateMemory(vk.device, &info, nullptr, &block.memory);
+        if (result == VK_SUCCESS && maps && (properties & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT))
+            vk.MapMemory(vk.device, block.memory, 0, VK_WHOLE_SIZE, 0, &block.mapped);
+        ++blocks;
         return result;
-    };
-    desc.free = [](void* user, const limpid_vulkan_memory* block) {
-        auto& from = *static_cast<Heap*>(user);
-        from.context->vk().FreeMemory(from.context->device(), block->memory, nullptr);
-        ++from.freed;
-    };
-    ASSERT_EQ(adopt(desc), LIMPID_OK) << limpid_last_error();
+    }
+};
+
+TEST_F(VulkanFramesTest, MemoryThatIsNotMappedIsGivenBack) {
+    Heap heap{.context = &program(), .maps = false};
+    ASSERT_EQ(adopt(heap.described()), LIMPID_OK) << limpid_last_error();
+    limpid_denoiser* const denoiser = create();
+    const auto f = upload(SyntheticScene({}), 0);
+    run([&](VkCommandBuffer commands) {
+        EXPECT_EQ(limpid_record(denoiser, commands, &f->frame), LIMPID_ERROR_FAILED);
+        EXPECT_THAT(limpid_last_error(), HasSubstr("memory that the host cannot see"));
+    });
+    limpid_denoiser_destroy(std::exchange(denoisers_.back(), nullptr));
+    limpid_device_destroy(std::exchange(adopted_, nullptr));
+    EXPECT_GT(heap.blocks, 0);
+    EXPECT_EQ(heap.freed, heap.blocks);
+}
+
+TEST_F(VulkanFramesTest, TakesMemoryFromTheCaller) {
+    Heap heap{.context = &program()};
+    ASSERT_EQ(adopt(heap.described()), LIMPID_OK) << limpid_last_error();
     const SyntheticScene scene(movingObject);
     limpid_denoiser* const denoiser = create();
     const auto f = upload(scene, 0);
@@ -231,6 +360,17 @@ TEST_F(VulkanFramesTest, SaysWhatIsWrong) {
         bad = f->frame;
         bad.inputs[LIMPID_INPUT_NORMAL].view = VK_NULL_HANDLE;
         EXPECT_EQ(limpid_record(denoiser, commands, &bad), LIMPID_ERROR_INVALID_ARGUMENT);
+        bad = f->frame;
+        bad.inputs[LIMPID_INPUT_NORMAL].format = VK_FORMAT_UNDEFINED;
+        EXPECT_EQ(limpid_record(denoiser, commands, &bad), LIMPID_ERROR_INVALID_ARGUMENT);
+        EXPECT_THAT(limpid_last_error(), HasSubstr("format of the input 'normal' is not set"));
+        bad = f->frame;
+        std::swap(bad.inputs[LIMPID_INPUT_ID].format, bad.inputs[LIMPID_INPUT_DEPTH].format);
+        EXPECT_EQ(limpid_record(denoiser, commands, &bad), LIMPID_ERROR_INVALID_ARGUMENT);
+        bad = f->frame;
+        bad.outputs[LIMPID_OUTPUT_RADIANCE] = bad.outputs[LIMPID_OUTPUT_COLOR];
+        EXPECT_EQ(limpid_record(denoiser, commands, &bad), LIMPID_ERROR_INVALID_ARGUMENT);
+        EXPECT_THAT(limpid_last_error(), HasSubstr("have the same image"));
     });
     limpid_host_frame host = {sizeof host};
     EXPECT_EQ(limpid_denoise_host(denoiser, &host), LIMPID_ERROR_INVALID_ARGUMENT);

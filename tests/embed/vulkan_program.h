@@ -8,6 +8,7 @@
 
 #include "denoise/api/c_handles.h"
 #include "gpu/vulkan/device_impl.h"
+#include "gpu/vulkan/memory/format.h"
 #include "gpu/vulkan/memory/image.h"
 #include "limpid/denoise_vulkan.h"
 #include "tests/denoise/denoise_fixture.h"
@@ -46,7 +47,7 @@ class VulkanProgramTest : public DenoiseTest {
         desc.instance = program().instance();
         desc.physical_device = program().physicalDevice();
         desc.device = program().device();
-        desc.queue_family = program().queueFamily();
+        if (desc.queue_family == 0) desc.queue_family = program().queueFamily();
         if (!desc.get_instance_proc_addr) desc.get_instance_proc_addr = gpu::systemLoader();
         desc.debug_utils = program().hasDebugUtils();
         return limpid_device_adopt(&desc, &adopted_);
@@ -94,7 +95,7 @@ class VulkanProgramTest : public DenoiseTest {
             f->graph.upload(f->color, gpu::bytesOf(std::vector<float>(values, -1.0f)));
         f->graph.execute(device());
         for (const auto& [input, handle] : images)
-            f->frame.inputs[input] = imageOf(*f, handle, VK_FORMAT_R32G32B32A32_SFLOAT);
+            f->frame.inputs[input] = imageOf(*f, handle, gpu::toVulkan(inputs.at(input).first));
         limpid_vulkan_image& output = f->frame.outputs[LIMPID_OUTPUT_COLOR];
         output = imageOf(*f, f->color, half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT);
         output.layout_after = VK_IMAGE_LAYOUT_GENERAL;
