@@ -97,8 +97,9 @@ LIMPID_API void limpid_device_destroy(limpid_device* device);
 LIMPID_API const char* limpid_device_name(const limpid_device* device);
 
 /* Returns the driver's compiled pipelines. Store them and load them in the next run of the program, so that nothing is
- * compiled again. With `data` NULL, sets `size` to the number of bytes; otherwise writes up to `size` bytes and sets
- * `size` to the number written. */
+ * compiled again. Sets `size` to the number of bytes. With `data` not NULL, `size` says beforehand how many bytes fit
+ * there, and all are written; if they do not fit, none, and LIMPID_ERROR_INVALID_ARGUMENT is returned: another thread
+ * may have made pipelines since `size` was asked for, so try again. */
 LIMPID_API limpid_result limpid_device_pipeline_cache(const limpid_device* device, void* data, size_t* size);
 /* Call it before the first denoiser is created. Ignores data that is damaged, or from another device or driver. */
 LIMPID_API limpid_result limpid_device_load_pipeline_cache(limpid_device* device, const void* data, size_t size);
@@ -171,9 +172,9 @@ typedef enum limpid_depth {
 } limpid_depth;
 
 typedef enum limpid_motion_unit {
-    LIMPID_MOTION_PIXELS = 0,
-    LIMPID_MOTION_UV = 1, /* 1 is the width or height of the picture; v points down */
-    LIMPID_MOTION_NDC = 2 /* 2 is the width or height; y as in clip space (limpid_clip_y) */
+    LIMPID_MOTION_PIXELS = 0, /* x points right and y down, whatever limpid_clip_y is */
+    LIMPID_MOTION_UV = 1,     /* 1 is the width or height of the picture; v points down */
+    LIMPID_MOTION_NDC = 2     /* 2 is the width or height; y as in clip space (limpid_clip_y) */
 } limpid_motion_unit;
 
 typedef enum limpid_motion_direction {
@@ -195,7 +196,7 @@ typedef enum limpid_clip_y {
 typedef struct limpid_denoiser_desc {
     size_t size;
     limpid_method method;
-    uint32_t width, height; /* pixels of all images, 1 to 32768 */
+    uint32_t width, height; /* pixels of all images, 1 to 32768, and no more than the device's images may have */
     /* 0 or 1: RADIANCE is all light that is filtered. 2: RADIANCE is diffuse and SPECULAR specular light; takes twice
      * the time. */
     uint32_t signals;
@@ -218,26 +219,35 @@ typedef struct limpid_denoiser_desc {
     const char* name;
 } limpid_denoiser_desc;
 
-/* Matrices are column-major as in GLSL, element [4 * column + row], and do not include jitter. */
+/* Matrices are column-major as in GLSL, element [4 * column + row], and do not include jitter. The previous frame is
+ * the last one that this denoiser took without an error: if you skip frames, give that one's matrices, and motion
+ * since then, or set `reset`. */
 typedef struct limpid_camera {
     float view[16];       /* from world to view space */
     float projection[16]; /* from view to clip space; depth 0 to 1. Perspective or orthographic. */
-    float previous_view[16], previous_projection[16]; /* of the previous frame */
-    float jitter[2]; /* offset of the rays from the pixels' centres, pixels: -0.5 to 0.5 */
+    /* Of the previous frame. Not read in the first frame, after a cut or a new size, and by methods without history
+     * (BILATERAL unless taa.frames is above 1). */
+    float previous_view[16], previous_projection[16];
+    /* Offset of the rays from the pixels' centres, pixels: -0.5 to 0.5; x points right and y down, whatever
+     * limpid_clip_y is. */
+    float jitter[2];
 } limpid_camera;
 
 /* Creates a denoiser, and compiles its pipelines on several threads if `device` does not have them yet. Its images are
- * created for the first frame; limpid_denoiser_memory() returns their size. `*denoiser` is NULL on failure. */
+ * created for the first frame; limpid_denoiser_memory() returns their size. `*denoiser` is NULL on failure.
+ * LIMPID_ERROR_UNSUPPORTED: the device has no images of this size (its maxImageDimension2D). */
 LIMPID_API limpid_result limpid_denoiser_create(limpid_device* device, const limpid_denoiser_desc* desc,
                                                 limpid_denoiser** denoiser);
 /* NULL is ignored. Everything it has recorded must be finished on the device. */
 LIMPID_API void limpid_denoiser_destroy(limpid_denoiser* denoiser);
 
-/* Returns the device memory in bytes that such a denoiser allocates for its images; needs no device. `for_gpu` 0: on
- * CPUs. Each of the outputs RADIANCE and SPECULAR, if requested, takes another 16 bytes per pixel. */
+/* Returns the device memory in bytes that such a denoiser's images need at least; needs no device. `for_gpu` 0: on
+ * CPUs. Drivers align images, and frames in flight need parameters, both of which come on top. Each of the outputs
+ * RADIANCE and SPECULAR, if requested, takes another 16 bytes per pixel. */
 LIMPID_API limpid_result limpid_denoiser_memory(const limpid_denoiser_desc* desc, int32_t for_gpu, uint64_t* bytes);
 
-/* Changes the size of the frames that follow. History restarts. */
+/* Changes the size of the frames that follow. History restarts. Fails like limpid_denoiser_create(), and changes
+ * nothing then. */
 LIMPID_API limpid_result limpid_denoiser_resize(limpid_denoiser* denoiser, uint32_t width, uint32_t height);
 /* Marks a cut: the next frame starts without history. */
 LIMPID_API limpid_result limpid_denoiser_reset(limpid_denoiser* denoiser);

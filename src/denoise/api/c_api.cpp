@@ -1,5 +1,6 @@
 // The C interface (limpid/denoise.h): devices, denoisers, parameters.
 #include <algorithm>
+#include <utility>
 
 #include "denoise/api/c_device.h"
 #include "denoise/api/c_guard.h"
@@ -14,6 +15,13 @@ namespace {
 /// Looks along -z and along +z: as matrices of a perspective and of an orthographic camera.
 constexpr float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 constexpr float perspective[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1f, 0};
+
+/// Throws Unsupported if images of this size are too large for the device.
+void checkSize(const gpu::Device& device, const limpid_denoiser_desc& desc) {
+    if (std::max(desc.width, desc.height) <= device.maxImageSide()) return;
+    throw gpu::Unsupported(formatText("images of {} x {} pixels: {} has at most {} a side", desc.width,
+                                      desc.height, device.info().name, device.maxImageSide()));
+}
 
 }  // namespace
 
@@ -60,7 +68,8 @@ std::vector<DryFrame> dryFrames() {
         LIMPID_INPUT_EMISSION,        LIMPID_INPUT_ALBEDO, LIMPID_INPUT_ALBEDO_SPECULAR,  LIMPID_INPUT_MOTION,
         LIMPID_INPUT_PREVIOUS_NORMAL, LIMPID_INPUT_ID,     LIMPID_INPUT_REFLECTION_MOTION};
     std::vector<limpid_input> all = optional;
-    all.insert(all.end(), {LIMPID_INPUT_ROUGHNESS, LIMPID_INPUT_HIT_DISTANCE});
+    // With two signals it is there nevertheless.
+    all.insert(all.end(), {LIMPID_INPUT_SPECULAR, LIMPID_INPUT_ROUGHNESS, LIMPID_INPUT_HIT_DISTANCE});
     const std::vector<std::vector<limpid_input>> without{
         {},
         {LIMPID_INPUT_ALBEDO_SPECULAR, LIMPID_INPUT_SPECULAR, LIMPID_INPUT_REFLECTION_MOTION},
@@ -122,7 +131,7 @@ bool limpid_denoiser::startsAnew(bool reset) {
         graph.resetHistories();
         hasPrevious = false;
     }
-    return !hasPrevious;
+    return !hasPrevious || !readsHistory(desc, settings);
 }
 
 extern "C" {
@@ -153,9 +162,11 @@ const char* limpid_device_name(const limpid_device* device) {
 limpid_result limpid_device_pipeline_cache(const limpid_device* device, void* data, size_t* size) {
     return guarded([&] {
         const std::vector<std::byte> bytes = required(device, "device").device->pipelineCacheData();
-        size_t& count = required(size, "size");
-        count = data ? std::min(count, bytes.size()) : bytes.size();
-        if (data) std::memcpy(data, bytes.data(), count);
+        const size_t room = std::exchange(required(size, "size"), bytes.size());
+        if (!data) return;
+        if (room < bytes.size())
+            throw UsageError(formatText("the pipeline cache has {} bytes, more than {}", bytes.size(), room));
+        std::memcpy(data, bytes.data(), bytes.size());
     });
 }
 
@@ -173,7 +184,8 @@ limpid_result limpid_denoiser_create(limpid_device* device, const limpid_denoise
         required(denoiser, "denoiser") = nullptr;
         const limpid_denoiser_desc d = wholeStruct(desc, "limpid_denoiser_desc");
         check(d);
-        *denoiser = new limpid_denoiser(required(device, "device"), d);
+        checkSize(*required(device, "device").device, d);
+        *denoiser = new limpid_denoiser(*device, d);
     });
 }
 
@@ -200,6 +212,7 @@ limpid_result limpid_denoiser_resize(limpid_denoiser* denoiser, uint32_t width, 
         d.width = width;
         d.height = height;
         check(d);
+        checkSize(*denoiser->device, d);
         denoiser->desc = d;
         denoiser->startsAnew(true);
     });

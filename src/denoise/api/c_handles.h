@@ -17,7 +17,8 @@ struct limpid_device {
 struct limpid_denoiser {
     limpid_denoiser(const limpid_device& on, const limpid_denoiser_desc& desc);
 
-    /// Resets the histories if `reset` is set. Returns true if the next frame starts without history.
+    /// Resets the histories if `reset` is set. Returns true if the next frame starts without history, or the
+    /// method keeps none.
     bool startsAnew(bool reset);
     /// Call it when a frame has really been recorded.
     void finish() { hasPrevious = true; }

@@ -74,16 +74,25 @@ gpu::MemoryHooks hooksOf(const limpid_vulkan_device_desc& desc) {
     return hooks;
 }
 
-VkImageAspectFlags aspectsOf(VkFormat format) {
+/// The aspects that a barrier of such an image must name.
+VkImageAspectFlags aspectsOf(VkFormat format, VkImageLayout layout) {
     switch (format) {
         case VK_FORMAT_D16_UNORM:
         case VK_FORMAT_X8_D24_UNORM_PACK32:
         case VK_FORMAT_D32_SFLOAT:
             return VK_IMAGE_ASPECT_DEPTH_BIT;
+        case VK_FORMAT_S8_UINT:
+            return VK_IMAGE_ASPECT_STENCIL_BIT;
         case VK_FORMAT_D16_UNORM_S8_UINT:
         case VK_FORMAT_D24_UNORM_S8_UINT:
         case VK_FORMAT_D32_SFLOAT_S8_UINT:
-            // A barrier must include both aspects.
+            // Layouts of one aspect are only allowed for that one; other layouts are those of both.
+            if (layout == VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL ||
+                layout == VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL)
+                return VK_IMAGE_ASPECT_DEPTH_BIT;
+            if (layout == VK_IMAGE_LAYOUT_STENCIL_READ_ONLY_OPTIMAL ||
+                layout == VK_IMAGE_LAYOUT_STENCIL_ATTACHMENT_OPTIMAL)
+                return VK_IMAGE_ASPECT_STENCIL_BIT;
             return VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
         default:
             return VK_IMAGE_ASPECT_COLOR_BIT;
@@ -94,7 +103,7 @@ gpu::ForeignImage foreign(const limpid_vulkan_image& image, const char* name) {
     if (image.view == VK_NULL_HANDLE) throw UsageError(formatText("the image '{}' has no view", name));
     return {.image = reinterpret_cast<uint64_t>(image.image),
             .view = reinterpret_cast<uint64_t>(image.view),
-            .aspects = aspectsOf(image.format),
+            .aspects = aspectsOf(image.format, image.layout),
             .layoutBefore = image.layout,
             .layoutAfter = image.layout_after,
             .stagesBefore = image.stages_before,
@@ -103,12 +112,55 @@ gpu::ForeignImage foreign(const limpid_vulkan_image& image, const char* name) {
             .accessAfter = image.access_after};
 }
 
+bool isUnsigned(VkFormat format) {
+    switch (format) {
+        case VK_FORMAT_R8_UINT:
+        case VK_FORMAT_R8G8_UINT:
+        case VK_FORMAT_R8G8B8_UINT:
+        case VK_FORMAT_B8G8R8_UINT:
+        case VK_FORMAT_R8G8B8A8_UINT:
+        case VK_FORMAT_B8G8R8A8_UINT:
+        case VK_FORMAT_A8B8G8R8_UINT_PACK32:
+        case VK_FORMAT_A2R10G10B10_UINT_PACK32:
+        case VK_FORMAT_A2B10G10R10_UINT_PACK32:
+        case VK_FORMAT_R16_UINT:
+        case VK_FORMAT_R16G16_UINT:
+        case VK_FORMAT_R16G16B16_UINT:
+        case VK_FORMAT_R16G16B16A16_UINT:
+        case VK_FORMAT_R32_UINT:
+        case VK_FORMAT_R32G32_UINT:
+        case VK_FORMAT_R32G32B32_UINT:
+        case VK_FORMAT_R32G32B32A32_UINT:
+        case VK_FORMAT_S8_UINT:
+            return true;
+        default:
+            return false;
+    }
+}
+
+bool hasStencilBesideDepth(VkFormat format) {
+    return format == VK_FORMAT_D16_UNORM_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT ||
+           format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+}
+
+/// Shaders read unsigned integers of ids, and floats of all else.
+void checkFormat(size_t input, VkFormat format) {
+    if (format == VK_FORMAT_UNDEFINED)
+        throw UsageError(formatText("the format of the input '{}' is not set", inputName(input)));
+    const bool isId = input == LIMPID_INPUT_ID;
+    if (hasStencilBesideDepth(format) || isUnsigned(format) == isId) return;
+    throw UsageError(formatText("the input '{}' is of VkFormat {}: it must hold {}", inputName(input),
+                                static_cast<int>(format),
+                                isId ? "unsigned integers" : "floats or normalised numbers"));
+}
+
 IngestImages importInputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
                           const limpid_vulkan_frame& frame) {
     IngestImages images;
     for (size_t input = 0; input < LIMPID_INPUT_MAX; ++input) {
         if (frame.inputs[input].image == VK_NULL_HANDLE) continue;
         gpu::ImageHandle& handle = imageOf(images, input);
+        checkFormat(input, frame.inputs[input].format);
         gpu::ForeignImage image = foreign(frame.inputs[input], inputName(input));
         if (image.layoutBefore == VK_IMAGE_LAYOUT_UNDEFINED)
             image.layoutBefore = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
@@ -132,6 +184,14 @@ gpu::Format outputFormat(VkFormat format, const char* name) {
 
 constexpr std::array<const char*, 3> outputNames{"color", "radiance", "specular"};
 
+/// Throws UsageError if output `i` has the image of an earlier one: the outputs are written all at once.
+void checkDistinct(const limpid_vulkan_frame& frame, size_t i) {
+    for (size_t other = 0; other < i; ++other)
+        if (frame.outputs[other].image == frame.outputs[i].image)
+            throw UsageError(formatText("the outputs '{}' and '{}' have the same image", outputNames[other],
+                                        outputNames[i]));
+}
+
 using Targets = std::array<gpu::ImageHandle, 3>;
 
 /// The caller's images for the outputs, empty if they are not wanted; with `forReal` false, images that stand
@@ -143,6 +203,7 @@ Targets importOutputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
         const limpid_vulkan_image& image = frame.outputs[i];
         if (image.image == VK_NULL_HANDLE) continue;
         if (i >= targets.size()) throw UsageError("the method has no output of this number");
+        checkDistinct(frame, i);
         const gpu::Format format = outputFormat(image.format, outputNames[i]);
         const gpu::Extent extent{desc.width, desc.height};
         gpu::ForeignImage target = foreign(image, outputNames[i]);
@@ -252,17 +313,17 @@ limpid_result limpid_warm_up(limpid_denoiser* denoiser, VkCommandBuffer commands
         auto graph = std::make_unique<gpu::FrameGraph>(
             gpu::GraphOptions{.framesInFlight = 1, .prefix = "limpid/warm up/", .timestamps = false});
         graph->beginFrame();
+        // Without a previous frame, whose matrices may not be set yet.
+        const IngestParams params = ingestParams(few, frame.camera, false);
         const IngestImages images = importInputs(*graph, few, frame);
         const Targets targets = importOutputs(*graph, few, frame, false);
-        recordOutputs(
-            *graph,
-            recordFrame(*graph, few, d.settings, images, ingestParams(few, frame.camera, true),
-                        gpu::filterBacking(*d.device), wantsSignals(frame), targets[LIMPID_OUTPUT_COLOR]),
-            targets);
+        recordOutputs(*graph,
+                      recordFrame(*graph, few, d.settings, images, params, gpu::filterBacking(*d.device),
+                                  wantsSignals(frame), targets[LIMPID_OUTPUT_COLOR]),
+                      targets);
         graph->record(*d.device, commands);
         d.warmUps.push_back(std::move(graph));
         // Memory is given when it is first written, which takes a CPU longer than a frame.
-        const IngestParams params = ingestParams(d.desc, frame.camera, true);
         recordDryFrame(d.graph, d.desc, d.settings, gpu::filterBacking(*d.device),
                        {.without = missingInputs(frame), .orthographic = params.camera.orthographic != 0},
                        wantsSignals(frame));

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "base/error.h"
+#include "base/text/format.h"
 
 namespace limpid::denoise {
 namespace {
@@ -42,8 +44,8 @@ Matrix multiply(const Matrix& a, const Matrix& b) {
     return result;
 }
 
-/// Inverts by Gaussian elimination with row pivots.
-Matrix inverse(Matrix m) {
+/// Inverts by Gaussian elimination with row pivots. Throws UsageError with the matrix's name.
+Matrix inverse(Matrix m, const std::string& name) {
     Matrix result{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     for (size_t column = 0; column < 4; ++column) {
         size_t pivot = column;
@@ -51,7 +53,7 @@ Matrix inverse(Matrix m) {
             if (std::abs(m[4 * column + row]) > std::abs(m[4 * column + pivot])) pivot = row;
         const double scale = m[4 * column + pivot];
         if (!(std::abs(scale) > 0.0) || !std::isfinite(scale))
-            throw UsageError("a matrix of the camera is singular, or not finite");
+            throw UsageError(formatText("the matrix of the camera '{}' is singular, or not finite", name));
         for (size_t c = 0; c < 4; ++c) {
             std::swap(m[4 * c + column], m[4 * c + pivot]);
             std::swap(result[4 * c + column], result[4 * c + pivot]);
@@ -81,9 +83,8 @@ Vector unproject(const Matrix& fromClip, double x, double y) {
 
 /// All points of one clip depth lie in a plane perpendicular to the view axis, so rays through it are linear
 /// in x and y.
-CameraParams paramsOf(const Matrix& view, const Matrix& fromClip, bool orthographic, double down,
+CameraParams paramsOf(const Matrix& toWorld, const Matrix& fromClip, bool orthographic, double down,
                       double height) {
-    const Matrix toWorld = inverse(view);
     const Vector eye{toWorld[12], toWorld[13], toWorld[14]};
     const Vector axis{toWorld[8], toWorld[9], toWorld[10]};
     const Vector centre = unproject(fromClip, 0, 0);
@@ -118,13 +119,14 @@ vec4 rowOf(const Matrix& m, size_t row, double sign = 1.0) {
 }  // namespace
 
 CameraMatrices cameraFromMatrices(const float (&view)[16], const float (&projection)[16], bool yUp,
-                                  uint32_t height) {
-    const Matrix v = toDouble(view), p = toDouble(projection);
-    const Matrix toClip = multiply(p, v), fromClip = inverse(toClip);
+                                  uint32_t height, const char* prefix) {
+    const Matrix v = toDouble(view), p = toDouble(projection), toClip = multiply(p, v);
+    const Matrix toWorld = inverse(v, std::string(prefix) + "view");
+    const Matrix fromClip = inverse(toClip, std::string(prefix) + "projection");
     const double down = yUp ? -1.0 : 1.0;  // clip-space y of the lower edge
     const bool orthographic = p[11] == 0.0;
     CameraMatrices result;
-    result.params = paramsOf(v, fromClip, orthographic, down, height);
+    result.params = paramsOf(toWorld, fromClip, orthographic, down, height);
     result.clip = {rowOf(toClip, 0), rowOf(toClip, 1, down), rowOf(toClip, 3)};
     // The rows of a rotation are the axes of its target space.
     for (size_t axis = 0; axis < 3; ++axis)

@@ -125,12 +125,18 @@ void check(const limpid_denoiser_desc& desc) {
         throw UsageError(formatText("frames_in_flight: at most 8, not {}", desc.frames_in_flight));
 }
 
+bool readsHistory(const limpid_denoiser_desc& desc, const FilterSettings& settings) {
+    return methods()[static_cast<size_t>(desc.method)].keepsHistory ||
+           framesToAverage(settings.taa, false) > 1.0f;
+}
+
 IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera& camera, bool hasPrevious) {
     const bool yUp = desc.clip_y == LIMPID_CLIP_Y_UP;
     const CameraMatrices now = cameraFromMatrices(camera.view, camera.projection, yUp, desc.height);
-    const CameraMatrices before =
-        hasPrevious ? cameraFromMatrices(camera.previous_view, camera.previous_projection, yUp, desc.height)
-                    : now;
+    const CameraMatrices before = hasPrevious
+                                      ? cameraFromMatrices(camera.previous_view, camera.previous_projection,
+                                                           yUp, desc.height, "previous_")
+                                      : now;
     IngestParams params{};
     params.camera = now.params;
     params.motion = motionEncoding(desc, camera, before, hasPrevious);

@@ -28,8 +28,12 @@ double parameter(const FilterSettings& settings, limpid_method method, std::stri
 /// side does not have 1 to 32768 pixels.
 void check(const limpid_denoiser_desc& desc);
 
+/// Whether frames depend on earlier ones: the method keeps a history, or anti-aliasing does.
+bool readsHistory(const limpid_denoiser_desc& desc, const FilterSettings& settings);
+
 /// Returns the ingest pass's parameters that follow from conventions and cameras. `hasPrevious`: there is a
-/// previous frame.
+/// previous frame; without, the camera's previous matrices are not read. Throws UsageError naming a matrix
+/// that is singular or not finite.
 IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera& camera, bool hasPrevious);
 
 /// Records a frame; needs no device. `signalsToo`: radiance and specular are wanted. `target`: the caller's

@@ -17,13 +17,34 @@ bool validationWanted(const DeviceOptions& options) {
     return options.validation || (variable && std::string_view(variable) == "1");
 }
 
+/// Throws UsageError if there is no such queue family, or it does not compute.
 uint32_t timestampBits(const InstanceFunctions& vk, VkPhysicalDevice device, uint32_t family) {
     uint32_t count = 0;
     vk.GetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vk.GetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-    if (family >= count) throw Error(formatText("the device has no queue family {}", family));
+    if (family >= count) throw UsageError(formatText("the device has no queue family {}", family));
+    if (!(families[family].queueFlags & VK_QUEUE_COMPUTE_BIT))
+        throw UsageError(formatText("queue family {} of the device does not compute", family));
     return families[family].timestampValidBits;
+}
+
+/// Functions of Vulkan 1.1 to 1.3 may be missing on a new device if the program asked for an older version.
+template <typename Function>
+void require(Function function, const char* name) {
+    if (!function)
+        throw Unsupported(
+            formatText("the program's Vulkan has no {}: the instance must be created with "
+                       "VkApplicationInfo::apiVersion 1.3 or later",
+                       name));
+}
+
+InstanceFunctions adoptedFunctions(const AdoptedDevice& adopted) {
+    const InstanceFunctions vk(adopted.getInstanceProcAddr, adopted.instance);
+    require(vk.GetDeviceProcAddr, "vkGetDeviceProcAddr");
+    require(vk.GetPhysicalDeviceFeatures2, "vkGetPhysicalDeviceFeatures2");
+    require(vk.GetPhysicalDeviceProperties2, "vkGetPhysicalDeviceProperties2");
+    return vk;
 }
 
 }  // namespace
@@ -40,7 +61,7 @@ Context::Context(const DeviceOptions& options)
 }
 
 Context::Context(const AdoptedDevice& adopted)
-    : instanceVk_(adopted.getInstanceProcAddr, adopted.instance),
+    : instanceVk_(adoptedFunctions(adopted)),
       hooks_(adopted.memory),
       messages_(adopted.messages),
       debugUtils_(adopted.debugUtils) {
@@ -54,6 +75,8 @@ Context::Context(const AdoptedDevice& adopted)
     physical_.timestampValidBits = timestampBits(instanceVk_, adopted.physicalDevice, adopted.queueFamily);
     instanceVk_.GetPhysicalDeviceMemoryProperties(adopted.physicalDevice, &memory_);
     vk_ = DeviceFunctions(instanceVk_, adopted.device);
+    require(vk_.CmdPipelineBarrier2, "vkCmdPipelineBarrier2");
+    require(vk_.CmdWriteTimestamp2, "vkCmdWriteTimestamp2");
     debugUtils_ = debugUtils_ && vk_.SetDebugUtilsObjectNameEXT && vk_.CmdBeginDebugUtilsLabelEXT;
 }
 

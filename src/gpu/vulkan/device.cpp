@@ -44,6 +44,10 @@ uint64_t Device::allocatedBytes() const {
     return *impl_->context->allocated();
 }
 
+uint32_t Device::maxImageSide() const {
+    return impl_->context->limits().maxImageDimension2D;
+}
+
 uint64_t Device::maxTexelBufferElements() const {
     return impl_->context->limits().maxTexelBufferElements;
 }

@@ -111,6 +111,7 @@ class Device {
     uint64_t validationMessages() const;
     /// Device memory currently allocated, including staging buffers.
     uint64_t allocatedBytes() const;
+    uint32_t maxImageSide() const;  ///< maxImageDimension2D
     uint64_t maxTexelBufferElements() const;
     uint64_t maxBufferBytes() const;  ///< the smaller of maxBufferSize and maxMemoryAllocationSize
 

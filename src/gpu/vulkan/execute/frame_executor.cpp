@@ -116,6 +116,8 @@ void FrameExecutor::record(const RecordedFrame& frame, VkCommandBuffer commands)
 
 void FrameExecutor::recordFrame(const RecordedFrame& frame, FrameSlot& slot, const Scope& scope) {
     images_.collect(submitted_);
+    acquireImages(frame);
+    bindPasses(frame, slot);
     prepareImages(frame, slot.commands(), scope);
     clearHistories(frame, slot.commands());
     recordUploads(frame, slot);
@@ -137,20 +139,44 @@ void FrameExecutor::finish(const RecordedFrame& frame) {
     }
 }
 
-/// One barrier orders this frame after earlier work, and moves new images and written foreign images to
-/// GENERAL layout.
-void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer commands, const Scope& scope) {
+/// Creates the images that are missing.
+void FrameExecutor::acquireImages(const RecordedFrame& frame) {
     frameImages_.clear();
-    std::vector<VkImageMemoryBarrier2> barriers;
     for (const RecordedImage& recorded : frame.images) {
         if (recorded.sharesWith) {
             frameImages_.push_back(frameImages_[*recorded.sharesWith]);
-            continue;
-        }
-        if (recorded.role == RecordedImage::Role::Foreign) {
-            const VkImageLayout layout = layoutDuring(recorded);
+        } else if (recorded.role == RecordedImage::Role::Foreign) {
+            frameImages_.push_back({nullptr, reinterpret_cast<VkImageView>(recorded.foreign.view),
+                                    layoutDuring(recorded), nullptr});
+        } else {
+            ImagePool::Entry& entry = images_.acquire(recorded.key, prefix_, submitted_);
             frameImages_.push_back(
-                {nullptr, reinterpret_cast<VkImageView>(recorded.foreign.view), layout, nullptr});
+                {&entry, entry.image.view.get(), VK_IMAGE_LAYOUT_GENERAL, entry.image.buffer.get()});
+        }
+    }
+}
+
+/// Gets the pipelines and descriptor sets of all passes. This may fail, and so comes before the first
+/// command: half a frame in the caller's command buffer would spoil the histories.
+void FrameExecutor::bindPasses(const RecordedFrame& frame, FrameSlot& slot) {
+    bound_.assign(frame.passes.size(), {});
+    for (size_t i = 0; i < frame.passes.size(); ++i) {
+        const RecordedDispatch& dispatch = frame.dispatches[i];
+        if (!dispatch.shader) continue;
+        checkGroups(frame, i);
+        bound_[i].pipeline = pipelines_->get(dispatch);
+        bound_[i].set = writeDescriptors(frame, i, bound_[i].pipeline.setLayout, slot);
+    }
+}
+
+/// One barrier orders this frame after earlier work, and moves new images and written foreign images to
+/// GENERAL layout.
+void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer commands, const Scope& scope) {
+    std::vector<VkImageMemoryBarrier2> barriers;
+    for (size_t i = 0; i < frame.images.size(); ++i) {
+        const RecordedImage& recorded = frame.images[i];
+        if (recorded.sharesWith) continue;
+        if (recorded.role == RecordedImage::Role::Foreign) {
             if (!recorded.sampled && !recorded.stored) continue;  // no pass uses it
             VkImageMemoryBarrier2& barrier = barriers.emplace_back(foreignBarrier(recorded));
             barrier.srcStageMask = recorded.foreign.stagesBefore;
@@ -158,13 +184,11 @@ void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer co
             barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
             barrier.dstAccessMask = recorded.sampled ? VK_ACCESS_2_SHADER_SAMPLED_READ_BIT : storageAccess;
             barrier.oldLayout = static_cast<VkImageLayout>(recorded.foreign.layoutBefore);
-            barrier.newLayout = layout;
+            barrier.newLayout = frameImages_[i].layout;
             continue;
         }
-        ImagePool::Entry& entry = images_.acquire(recorded.key, prefix_, submitted_);
-        const BufferStorage* buffer = entry.image.buffer.get();
-        frameImages_.push_back({&entry, entry.image.view.get(), VK_IMAGE_LAYOUT_GENERAL, buffer});
-        if (entry.initialised || buffer) continue;
+        const ImagePool::Entry& entry = *frameImages_[i].pooled;
+        if (entry.initialised || entry.image.buffer) continue;
         VkImageMemoryBarrier2& barrier = barriers.emplace_back(wholeImageBarrier(entry.image.image.get()));
         barrier.dstStageMask = scope.stages;
         barrier.dstAccessMask = scope.all;
@@ -235,17 +259,19 @@ void FrameExecutor::clearImage(const Image& image, VkCommandBuffer commands) {
 }
 
 void FrameExecutor::clear(const RecordedFrame& frame, VkCommandBuffer commands) {
-    std::vector<ImagePool::Entry*> fresh;
+    // All are created before one counts as cleared, since memory may run out in between.
+    std::vector<ImagePool::Entry*> entries, fresh;
+    for (const RecordedImage& recorded : frame.images)
+        if (recorded.role != RecordedImage::Role::Foreign)
+            entries.push_back(&images_.acquire(recorded.key, prefix_, submitted_));
     std::vector<VkImageMemoryBarrier2> barriers;
-    for (const RecordedImage& recorded : frame.images) {
-        if (recorded.role == RecordedImage::Role::Foreign) continue;
-        ImagePool::Entry& entry = images_.acquire(recorded.key, prefix_, submitted_);
-        if (entry.initialised) continue;
-        entry.initialised = true;
-        entry.zero = true;
-        fresh.push_back(&entry);
-        if (entry.image.buffer) continue;
-        VkImageMemoryBarrier2& barrier = barriers.emplace_back(wholeImageBarrier(entry.image.image.get()));
+    for (ImagePool::Entry* const entry : entries) {
+        if (entry->initialised) continue;
+        entry->initialised = true;
+        entry->zero = true;
+        fresh.push_back(entry);
+        if (entry->image.buffer) continue;
+        VkImageMemoryBarrier2& barrier = barriers.emplace_back(wholeImageBarrier(entry->image.image.get()));
         barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
         barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
         barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -339,15 +365,12 @@ void FrameExecutor::runOnHost(const RecordedFrame& frame, size_t index, FrameSlo
 }
 
 void FrameExecutor::recordDispatch(const RecordedFrame& frame, size_t index, FrameSlot& slot) {
-    checkGroups(frame, index);
-    const RecordedDispatch& dispatch = frame.dispatches[index];
     const VkCommandBuffer commands = slot.commands();
-    const PipelineCache::Pipeline pipeline = pipelines_->get(dispatch);
-    const VkDescriptorSet set = writeDescriptors(frame, index, pipeline.setLayout, slot);
+    const auto& [pipeline, set] = bound_[index];
     if (slices_ && !pipeline.table) return recordSlices(frame, index, pipeline, set, slot);
     beginLabel(commands, frame.passes[index].name);
     bind(commands, pipeline, set);
-    const auto& groups = dispatch.groups;
+    const auto& groups = frame.dispatches[index].groups;
     if (const ShaderTable* const table = pipeline.table) {
         const VkStridedDeviceAddressRegionKHR callable{};
         context_->vk().CmdTraceRaysKHR(commands, &table->rayGeneration, &table->miss, &table->hit, &callable,

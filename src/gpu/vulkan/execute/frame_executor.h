@@ -29,6 +29,7 @@ class FrameExecutor {
 
     const Context& context() const { return *context_; }
     void execute(const RecordedFrame& frame);
+    /// After an exception `commands` contains nothing of effect.
     void record(const RecordedFrame& frame, VkCommandBuffer commands);
     /// See FrameGraph::setInterruption().
     void setInterruption(std::function<bool()> interrupted);
@@ -49,6 +50,11 @@ class FrameExecutor {
         VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL;  ///< while the frame runs
         const BufferStorage* buffer = nullptr;           ///< set with Backing::Buffer
     };
+    /// What a pass is bound to; empty if it dispatches no shader.
+    struct BoundPass {
+        PipelineCache::Pipeline pipeline;
+        VkDescriptorSet set = VK_NULL_HANDLE;
+    };
     /// Accesses of earlier commands that the frame must wait for.
     struct Scope {
         VkPipelineStageFlags2 stages;
@@ -58,6 +64,8 @@ class FrameExecutor {
     void recordFrame(const RecordedFrame& frame, FrameSlot& slot, const Scope& scope);
     void releaseForeign(const RecordedFrame& frame, VkCommandBuffer commands) const;
     void finish(const RecordedFrame& frame);
+    void acquireImages(const RecordedFrame& frame);
+    void bindPasses(const RecordedFrame& frame, FrameSlot& slot);
     void prepareImages(const RecordedFrame& frame, VkCommandBuffer commands, const Scope& scope);
     void clearHistories(const RecordedFrame& frame, VkCommandBuffer commands);
     void clearImage(const Image& image, VkCommandBuffer commands);
@@ -82,6 +90,7 @@ class FrameExecutor {
     std::string prefix_;
     std::vector<FrameSlot> slots_;
     std::vector<FrameImage> frameImages_;  ///< by index of the recorded image
+    std::vector<BoundPass> bound_;         ///< by number of the pass
     bool foreign_ = false;                 ///< frames are recorded into the caller's commands
     std::vector<PassTime> foreignTimes_;   ///< of the latest frame known to be finished
     std::optional<TimeSlices> slices_;     ///< set: frames can be interrupted

@@ -80,7 +80,9 @@ void FrameGraph::setInterruption(std::function<bool()> interrupted) {
 }
 
 void FrameGraph::record(Device& device, VkCommandBuffer commands) {
-    impl_->readyToRun(device).record(impl_->frame, commands);
+    FrameExecutor& executor = impl_->readyToRun(device);
+    device.impl().pipelines->prepare(impl_->frame.dispatches);
+    executor.record(impl_->frame, commands);
     impl_->frame.executed = true;
 }
 

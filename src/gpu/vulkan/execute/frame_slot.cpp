@@ -115,21 +115,23 @@ void FrameSlot::reserveDescriptors(const RecordedFrame& frame) {
         LIMPID_VK(context_->vk().ResetDescriptorPool(context_->device(), descriptors_.get(), 0));
         return;
     }
+    std::array<uint32_t, bindingKindCount> capacity{};
     std::vector<VkDescriptorPoolSize> sizes;
     for (size_t i = 0; i < needed.size(); ++i) {
         const auto kind = static_cast<BindingKind>(i);
         if (kind == BindingKind::AccelerationStructure && !context_->hasRayTracing()) continue;
-        descriptorCapacity_[i] = std::max(16u, 2 * needed[i]);
-        sizes.push_back({descriptorType(kind), descriptorCapacity_[i]});
+        capacity[i] = std::max(16u, 2 * needed[i]);
+        sizes.push_back({descriptorType(kind), capacity[i]});
     }
-    setCapacity_ = std::max(16u, 2 * sets);
     VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-    info.maxSets = setCapacity_;
+    info.maxSets = std::max(16u, 2 * sets);
     info.poolSizeCount = static_cast<uint32_t>(sizes.size());
     info.pPoolSizes = sizes.data();
     VkDescriptorPool pool = VK_NULL_HANDLE;
     LIMPID_VK(context_->vk().CreateDescriptorPool(context_->device(), &info, nullptr, &pool));
     descriptors_ = UniqueDescriptorPool(context_->vk(), pool);
+    descriptorCapacity_ = capacity;
+    setCapacity_ = info.maxSets;
     context_->setName(pool, name("descriptors"));
 }
 
@@ -172,13 +174,13 @@ VkBuffer FrameSlot::stage(std::span<const RecordedUpload> uploads, std::span<con
 
 void FrameSlot::reserveTimestamps(uint32_t count) {
     if (count <= timestampCapacity_) return;
-    timestampCapacity_ = std::max(64u, 2 * count);
     VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    info.queryCount = timestampCapacity_;
+    info.queryCount = std::max(64u, 2 * count);
     VkQueryPool pool = VK_NULL_HANDLE;
     LIMPID_VK(context_->vk().CreateQueryPool(context_->device(), &info, nullptr, &pool));
     timestamps_ = UniqueQueryPool(context_->vk(), pool);
+    timestampCapacity_ = info.queryCount;
     context_->setName(pool, name("timestamps"));
 }
 

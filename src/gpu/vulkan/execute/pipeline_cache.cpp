@@ -144,11 +144,18 @@ UniqueDriverCache PipelineCache::makeDriverCache(std::span<const std::byte> data
 }
 
 std::vector<std::byte> PipelineCache::data() const {
+    const std::lock_guard lock(mutex_);
     const DeviceFunctions& vk = context_->vk();
+    std::vector<std::byte> bytes;
     size_t size = 0;
-    LIMPID_VK(vk.GetPipelineCacheData(vk.device, driverCache_.get(), &size, nullptr));
-    std::vector<std::byte> bytes(sizeof(uint64_t) + size);
-    LIMPID_VK(vk.GetPipelineCacheData(vk.device, driverCache_.get(), &size, bytes.data() + sizeof(uint64_t)));
+    VkResult result = VK_INCOMPLETE;
+    while (result == VK_INCOMPLETE) {  // other threads may make pipelines between the two calls
+        LIMPID_VK(vk.GetPipelineCacheData(vk.device, driverCache_.get(), &size, nullptr));
+        bytes.resize(sizeof(uint64_t) + size);
+        result =
+            vk.GetPipelineCacheData(vk.device, driverCache_.get(), &size, bytes.data() + sizeof(uint64_t));
+    }
+    LIMPID_VK(result);
     bytes.resize(sizeof(uint64_t) + size);
     const uint64_t sum = checksum(std::span(bytes).subspan(sizeof(sum)));
     std::memcpy(bytes.data(), &sum, sizeof(sum));

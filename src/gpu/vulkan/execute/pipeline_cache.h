@@ -36,7 +36,7 @@ class PipelineCache {
     /// Device::onNewPipelines().
     void onNewPipelines(std::function<void()> listener) { listener_ = std::move(listener); }
 
-    /// Returns what the driver has compiled so far (VkPipelineCache), with a checksum.
+    /// Returns what the driver has compiled so far (VkPipelineCache), with a checksum. Thread-safe.
     std::vector<std::byte> data() const;
     /// Initialises the driver's cache with earlier data(); damaged data is ignored. Throws Error if pipelines
     /// have been created.

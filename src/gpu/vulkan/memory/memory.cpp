@@ -70,10 +70,12 @@ Memory allocateByHooks(const Context& context, const VkMemoryRequirements& requi
     MemoryHooks::Block block;
     const VkResult result = hooks.allocate(requirements, properties, name.c_str(), block);
     if (result != VK_SUCCESS) failToAllocate(context, result, requirements.size, name);
+    // Owned before it is checked, so that it is given back.
+    Memory memory{block.memory, block.offset, static_cast<std::byte*>(block.mapped),
+                  ownerOf(context, requirements.size, [free = hooks.free, block] { free(block); })};
     if (use != MemoryUse::Device && !block.mapped)
         throw Error(formatText("the caller's allocator gave '{}' memory that the host cannot see", name));
-    return {block.memory, block.offset, static_cast<std::byte*>(block.mapped),
-            ownerOf(context, requirements.size, [free = hooks.free, block] { free(block); })};
+    return memory;
 }
 
 }  // namespace
