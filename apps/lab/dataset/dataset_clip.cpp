@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "cli/cluster/session.h"
+#include "lab/dataset/dataset_example.h"
 #include "lab/dataset/dataset_tensor.h"
 #include "renderer/frame/frame_renderer.h"
 #include "renderer/layers/layers.h"
@@ -17,8 +18,6 @@ namespace {
 
 using image::Image;
 using image::LayeredImage;
-
-constexpr uint32_t referenceSeed = 0x9E3779B9u;
 
 /// The image whose name ends so, among those that the pass writes.
 gpu::ImageHandle imageOf(const gpu::FrameGraph& graph, const std::string& pass, std::string_view ending) {

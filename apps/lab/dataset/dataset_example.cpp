@@ -12,8 +12,6 @@ namespace {
 using image::Image;
 using image::LayeredImage;
 
-constexpr uint32_t referenceSeed = 0x9E3779B9u;
-
 LayeredImage layersOf(FrameRenderer& still) {
     return toLayeredImage(still.download(), layerNames(), image::Storage::Float);
 }

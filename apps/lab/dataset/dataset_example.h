@@ -11,6 +11,9 @@
 
 namespace limpid::cli {
 
+/// References are independent of the noisy pictures: their seed differs by these bits.
+inline constexpr uint32_t referenceSeed = 0x9E3779B9u;
+
 struct ExampleSettings {
     gpu::Extent extent{256, 256};
     std::vector<uint32_t> samples{1, 4, 8, 32,

@@ -37,8 +37,6 @@ IngestImages uploadInputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& de
     return images;
 }
 
-constexpr const char* outputNames[] = {"color", "radiance", "specular"};
-
 /// Returns how many components the method's outputs have at least.
 uint32_t fewestComponents(const limpid_denoiser_desc& desc) {
     return desc.method == LIMPID_METHOD_VISIBILITY ? 1 : 3;

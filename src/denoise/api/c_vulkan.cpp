@@ -182,8 +182,6 @@ gpu::Format outputFormat(VkFormat format, const char* name) {
                    name, static_cast<int>(format)));
 }
 
-constexpr std::array<const char*, 3> outputNames{"color", "radiance", "specular"};
-
 /// Throws UsageError if output `i` has the image of an earlier one: the outputs are written all at once.
 void checkDistinct(const limpid_vulkan_frame& frame, size_t i) {
     for (size_t other = 0; other < i; ++other)

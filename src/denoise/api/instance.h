@@ -1,6 +1,7 @@
 // A denoiser for embedding: the C++ side of limpid/denoise.h, with exceptions in place of result codes.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -45,5 +46,7 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
 
 /// Returns the name of an input for messages and debuggers, such as "radiance".
 const char* inputName(size_t input);
+/// Likewise of the outputs, in the order of limpid_output.
+inline constexpr std::array<const char*, 3> outputNames{"color", "radiance", "specular"};
 
 }  // namespace limpid::denoise

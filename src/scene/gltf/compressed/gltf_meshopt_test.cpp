@@ -291,7 +291,7 @@ TEST_F(MeshoptTest, CompressedMatrices) {
     const int accessor = file.accessor(
         file.addCompressed(encodeAttributes(numbers.data(), 5, 64), 5, 64, "ATTRIBUTES"), 5126, 5, "MAT4");
     const gltf::Document document(file.saveCompressed(folder));
-    const std::vector<mat4> matrices = gltf::readMat4(document, accessor);
+    const std::vector<mat4> matrices = gltf::readMat4(document, accessor, 5);
     ASSERT_EQ(matrices.size(), 5u);
     EXPECT_EQ(std::memcmp(matrices.data(), numbers.data(), numbers.size() * sizeof(float)), 0);
 }
