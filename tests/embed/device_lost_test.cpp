@@ -153,7 +153,7 @@ TEST_F(DeviceLostTest, EveryCallThatMeetsItSaysSo) {
     limpid_denoiser* denoiser = createTimed();
     ASSERT_EQ(record(denoiser, 0), LIMPID_OK) << limpid_last_error();
     const auto f = upload(SyntheticScene({}), 1);
-    lost = everything;
+    fail(everything);
     EXPECT_EQ(record(denoiser, 1), LIMPID_ERROR_DEVICE_LOST);
     EXPECT_THAT(limpid_last_error(), HasSubstr("the device was lost"));
     run([&](VkCommandBuffer commands) {
@@ -240,7 +240,7 @@ TEST_F(DeviceLostTest, AWarmUpWithoutMemoryChangesNothing) {
 
 TEST_F(DeviceLostTest, AdoptingALostDeviceFails) {
     destroyAll();
-    lost = everything;
+    fail(everything);
     limpid_vulkan_device_desc desc = {};
     desc.get_instance_proc_addr = &instanceProcAddr;
     EXPECT_EQ(adopt(desc), LIMPID_ERROR_DEVICE_LOST);
@@ -253,7 +253,7 @@ TEST_F(DeviceLostTest, AdoptingALostDeviceFails) {
 TEST_F(DeviceLostTest, ANewStartGivesTheSamePictures) {
     const SyntheticScene scene({});
     const std::vector<float> before = denoiseSequence(createTimed(), scene, 2);
-    lost = everything;
+    fail(everything);
     EXPECT_EQ(record(denoisers_.back(), 2), LIMPID_ERROR_DEVICE_LOST);
     destroyAll();
     lost = nothing;
