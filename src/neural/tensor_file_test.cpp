@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(
             "begins at byte 0"},
         Bad{"Rest", withA(tensor("[]", "[0,2]"), onePoint5 + "x"), "end at byte 2 of 3"},
         Bad{"Metadata", fileOf(R"({"__metadata__":[]})", ""), "metadata"},
-        Bad{"MetadataNumber", fileOf(R"({"__metadata__":{"x":1}})", ""), "no string"},
+        Bad{"MetadataNumber", fileOf(R"({"__metadata__":{"x":1}})", ""), "is not a string"},
         Bad{"Damaged",
             fileOf(R"({"__metadata__":{"crc32":"00000001"},"a":)" + tensor("[]", "[0,2]") + "}", onePoint5),
             "damaged"}),
