@@ -39,6 +39,10 @@ function(limpid_add_suite SUITE)
   endif()
   add_test("${TEST}" "${PROGRAM}" "--gtest_filter=${NAMES}" --gtest_brief=1)
   set_tests_properties("${TEST}" PROPERTIES LABELS "${LABELS}" TIMEOUT 1800 COST ${COST})
+  # They judge how soon the window reacts: beside them only one other test runs on two cores.
+  if("${TEST}" MATCHES "^View|^CliView")
+    set_tests_properties("${TEST}" PROPERTIES PROCESSORS 2)
+  endif()
 endfunction()
 
 set(SUITE "")
