@@ -127,6 +127,7 @@ TEST_F(CliDatasetTest, AClipHasWhatAFilterOfAccumulatedLightSees) {
     EXPECT_EQ(manifest["dataset"]["sequence"], (std::vector<int>{1, 3}));
     expect("dataset --sequence 3,1 --samples 1 -o '" + path("x") + "'", 2, "ascending");
     expect("dataset --sequence 1,3 -o '" + path("x") + "'", 2, "one number of --samples");
+    expect("dataset --picture-height 512 -o '" + path("x") + "'", 2, "--picture-height");
 }
 
 }  // namespace

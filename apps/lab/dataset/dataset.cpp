@@ -252,6 +252,8 @@ void run(const DatasetOptions& o) {
             throw UsageError("the frames of --sequence must be strictly ascending");
         if (o.example.samples.size() != 1) throw UsageError("--sequence takes one number of --samples: 1");
     }
+    if (o.pictureHeight > 0 && (o.sequence.empty() || o.pictureHeight < o.example.extent.height))
+        throw UsageError("--picture-height goes with --sequence, and is at least --height");
     const Dataset dataset(o);
     if (dataset.examples() == 0) throw UsageError("choose at least one room, still life or scene");
     makeFolder(o.folder);

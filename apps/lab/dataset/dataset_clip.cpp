@@ -27,11 +27,12 @@ gpu::ImageHandle imageOf(const gpu::FrameGraph& graph, const std::string& pass, 
     throw Error(fmt::format("the pass '{}' writes no image '{}'", pass, ending));
 }
 
-Image downloaded(gpu::Device& device, gpu::FrameGraph& graph, gpu::ImageHandle image) {
-    const gpu::Extent extent = graph.extent(image);
-    Image picture(extent.width, extent.height, gpu::componentCount(graph.format(image)));
-    picture.pixels = graph.downloadFloat(device, image);
-    return picture;
+/// The same, of floats, on the host.
+Image pictureOf(FrameRenderer& renderer, const std::string& pass, std::string_view ending) {
+    for (auto& [name, picture] : renderer.dump(pass)) {
+        if (name.ends_with(ending)) return picture;
+    }
+    throw Error(fmt::format("the pass '{}' writes no image '{}'", pass, ending));
 }
 
 /// svgf_stable.glsl: three signed numbers of 9 bits, and an exponent of 5 bits.
@@ -68,18 +69,13 @@ void addFrame(gpu::Device& device, FrameRenderer& renderer, const std::string& p
               neural::TensorFile& file) {
     gpu::FrameGraph& graph = renderer.graph();
     for (const std::string signal : {"diffuse", "specular"}) {
-        const auto image = [&](const std::string& pass, std::string_view ending) {
-            return imageOf(graph, pass, ending);
-        };
         const std::string reproject = "svgf/reproject " + signal;
-        const Image moments = downloaded(device, graph, image(reproject, "moments"));
-        file.tensors[prefix + signal] =
-            tensorOf(downloaded(device, graph, image("svgf/variance " + signal, "color")));
-        file.tensors[prefix + signal + ".first"] =
-            tensorOf(downloaded(device, graph, image("svgf/level 1", signal)));
+        file.tensors[prefix + signal] = tensorOf(pictureOf(renderer, "svgf/variance " + signal, "color"));
+        file.tensors[prefix + signal + ".first"] = tensorOf(pictureOf(renderer, "svgf/level 1", signal));
         file.tensors[prefix + signal + ".past"] =
-            tensorOf(stableLight(device, graph, image(reproject, "stable past")));
-        file.tensors[prefix + signal + ".frames"] = tensorOf(componentOf(moments, 3));
+            tensorOf(stableLight(device, graph, imageOf(graph, reproject, "stable past")));
+        file.tensors[prefix + signal + ".frames"] =
+            tensorOf(componentOf(pictureOf(renderer, reproject, "moments"), 3));
     }
     const RenderedLayers rendered = renderer.download();
     Image filtered(rendered.extent.width, rendered.extent.height, 4);
