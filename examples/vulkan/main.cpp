@@ -1,10 +1,14 @@
 // Limpid in a Vulkan program. Traces a moving scene with one path per pixel, denoises each frame with SVGF in the same
 // command buffer, changes the picture's size half-way, and writes the last frame to noisy.ppm and clean.ppm.
 //     limpid-vulkan [--validate] [--two]      --two: adds a second denoiser, which writes clean2.ppm
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iostream>
 #include <limpid/denoise_vulkan.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
 #include <vulkan/vulkan_raii.hpp>
 using namespace vk;
 using Stage = PipelineStageFlagBits2;

@@ -2,6 +2,7 @@
 // compares the peak of `limpid render` with a large picture and with one of a single pixel.
 #include <stb/stb_image_write.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "tests/cli/cli_fixture.h"

@@ -1,6 +1,7 @@
 // Tests `limpid bench quality` as users and scripts use it: reports, stored references, exit codes.
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "tests/cli/cli_fixture.h"
 

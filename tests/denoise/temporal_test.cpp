@@ -1,6 +1,8 @@
 // Compares the pass of temporal accumulation with the version in double precision, on identical inputs.
 #include <gmock/gmock.h>
 
+#include <sstream>
+
 #include "base/params.h"
 #include "renderer/method/presets.h"
 #include "tests/denoise/denoise_fixture.h"

@@ -1,5 +1,6 @@
 // Compares texture look-up with a plain C++ version in double precision, written from OpenGL ES 3.0, section
 // 3.8.10, which glTF's samplers refer to.
+#include <algorithm>
 #include <cmath>
 #include <random>
 

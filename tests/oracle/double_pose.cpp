@@ -1,5 +1,6 @@
 #include "tests/oracle/double_pose.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace limpid::test {

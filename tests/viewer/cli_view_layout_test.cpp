@@ -2,6 +2,7 @@
 // keys, the start page, the theme; and how soon it reacts.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 

@@ -3,6 +3,7 @@
 
 #ifdef LIMPID_WINDOW_PIXELS
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>

@@ -1,5 +1,7 @@
 #include "cli/console/command_text.h"
 
+#include <vector>
+
 namespace limpid::cli {
 namespace {
 

@@ -1,6 +1,9 @@
 #include "gpu/graph/dispatch_recorder.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <variant>
 
 #include "base/error.h"
 #include "base/text/format.h"

@@ -1,6 +1,10 @@
 // Records one dispatch and checks it against the shader's reflection.
 #pragma once
 
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "gpu/graph/frame_graph_impl.h"
 
 namespace limpid::gpu {

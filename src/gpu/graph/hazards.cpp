@@ -1,4 +1,7 @@
 // Determines which passes must wait for which.
+#include <span>
+#include <vector>
+
 #include "gpu/graph/frame_graph_impl.h"
 
 namespace limpid::gpu {

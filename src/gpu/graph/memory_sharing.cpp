@@ -1,4 +1,6 @@
 // Lets images of one frame share memory (GraphOptions::shareMemory).
+#include <vector>
+
 #include "gpu/graph/frame_graph_impl.h"
 
 namespace limpid::gpu {

@@ -1,6 +1,7 @@
 // Tests cameras of glTF files, on one that Blender 3.4 exported from the shot `camera` of scripts/shots.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <bit>
 
 #include "base/error.h"

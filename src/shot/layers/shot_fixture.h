@@ -12,6 +12,7 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <string>

@@ -1,4 +1,5 @@
 // White furnace: a white surface of any kind returns all light that it receives.
+#include <algorithm>
 #include <cmath>
 
 #include "tests/gpu/bsdf/bsdf_fixture.h"

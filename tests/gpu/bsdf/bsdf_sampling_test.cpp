@@ -1,5 +1,6 @@
 // Compares sampling with density: chi-square tests, normalisation, and albedo by sampling with albedo by
 // quadrature.
+#include <algorithm>
 #include <cmath>
 
 #include "tests/gpu/bsdf/bsdf_fixture.h"

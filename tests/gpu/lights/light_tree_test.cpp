@@ -3,6 +3,7 @@
 #include "scene/device/lights/light_tree.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <random>

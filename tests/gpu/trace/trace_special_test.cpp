@@ -1,5 +1,6 @@
 // Tests traversal where the answer is known without a second tracer: closed bodies, and transparent
 // materials.
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 

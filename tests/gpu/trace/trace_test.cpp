@@ -1,4 +1,5 @@
 // Compares traversal with a tracer that uses no tree.
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
