@@ -1,6 +1,7 @@
 // Tests the window's tools: comparisons, lights, recompiled shaders, and recovery from errors.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 
 #include "image/io/exr/exr.h"
@@ -74,8 +75,11 @@ TEST_F(ViewToolsTest, ComparesWithAReference) {
         return made.starts_with("reference, ") &&
                std::stoi(made.substr(11)) >= std::stoi(viewer.value("reference samples"));
     });
-    viewer.waitFor("scores", [&] { return viewer.value("scores").starts_with("PSNR"); });
-    EXPECT_GT(std::stod(viewer.value("scores").substr(5)), 15.0);
+    // Scores of a reference with fewer samples (14 dB) may stand there for a moment.
+    viewer.waitFor("the scores of the converged reference", [&] {
+        const std::string scores = viewer.value("scores");
+        return scores.starts_with("PSNR ") && std::stod(scores.substr(5)) > 20.0;
+    });
     const std::string one = viewer.settledPicture();  // the screenshot shows only the picture
 
     const Control divider = viewer.at("divider");
