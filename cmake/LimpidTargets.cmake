@@ -82,7 +82,7 @@ macro(limpid_find_neural)
 endmacro()
 
 # With LIMPID_PCH these headers are precompiled, which reduces the time of a clean build to two thirds. It is off by
-# default, so that missing includes are noticed.
+# default, so that missing includes are noticed (scripts/check_includes.py finds most of them, too).
 set(LIMPID_PCH_HEADERS
   <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory> <optional> <random> <set>
   <span> <sstream> <string> <string_view> <vector> <fmt/format.h> <glm/glm.hpp> <nlohmann/json.hpp>)
@@ -103,9 +103,7 @@ function(limpid_precompile)
     return()
   endif()
   file(WRITE ${PROJECT_BINARY_DIR}/pch/pch.cpp "// Compiled only to have its headers parsed.\n")
-  if(NOT LIMPID_PCH STREQUAL "TESTS")
-    limpid_add_pch(limpid_pch)
-  endif()
+  limpid_add_pch(limpid_pch)
   if(LIMPID_TESTS)
     limpid_add_pch(limpid_test_pch DEPS GTest::gmock GTest::gtest HEADERS <gmock/gmock.h> <gtest/gtest.h>)
     target_link_libraries(limpid_test_pch PRIVATE limpid_test_options)
@@ -132,7 +130,7 @@ endfunction()
 # limpid_quick(TARGET): applies LIMPID_PCH and LIMPID_UNITY to a target that is not a test.
 function(limpid_quick NAME)
   limpid_use_pch(${NAME} limpid_pch)
-  if(LIMPID_UNITY AND NOT LIMPID_UNITY STREQUAL "TESTS")
+  if(LIMPID_UNITY)
     limpid_unity(${NAME})
   endif()
 endfunction()

@@ -39,9 +39,10 @@ function(limpid_add_suite SUITE)
   endif()
   add_test("${TEST}" "${PROGRAM}" "--gtest_filter=${NAMES}" --gtest_brief=1)
   set_tests_properties("${TEST}" PROPERTIES LABELS "${LABELS}" TIMEOUT 1800 COST ${COST})
-  # They judge how soon the window reacts: beside them only one other test runs on two cores.
+  # They judge how soon the window reacts: beside them only one other test runs on two cores. Started later than others,
+  # they would wait for two free places until all others have ended.
   if("${TEST}" MATCHES "^View|^CliView")
-    set_tests_properties("${TEST}" PROPERTIES PROCESSORS 2)
+    set_tests_properties("${TEST}" PROPERTIES PROCESSORS 2 COST 1000)
   endif()
 endfunction()
 
