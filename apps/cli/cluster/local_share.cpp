@@ -5,20 +5,12 @@
 #include <optional>
 #include <vector>
 
+#include "base/text/lower_case.h"
+
 namespace limpid::cli {
-namespace {
-
-std::string lowerCaseOf(std::string text) {
-    std::ranges::transform(text, text.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
-}  // namespace
-
 std::string deviceOfProcess(std::span<const gpu::DeviceInfo> devices, const std::string& select,
                             int localRank) {
-    const std::string wanted = lowerCaseOf(select);
+    const std::string wanted = lowerCase(select);
     if (!wanted.empty() &&
         (wanted == "cpu" || std::ranges::all_of(wanted, [](unsigned char c) { return std::isdigit(c); })))
         return select;
@@ -28,7 +20,7 @@ std::string deviceOfProcess(std::span<const gpu::DeviceInfo> devices, const std:
     std::vector<uint32_t> candidates;
     for (const gpu::DeviceInfo& info : devices) {
         const bool matches =
-            wanted.empty() ? info.type == *best : lowerCaseOf(info.name).find(wanted) != std::string::npos;
+            wanted.empty() ? info.type == *best : lowerCase(info.name).find(wanted) != std::string::npos;
         if (info.usable && matches) candidates.push_back(info.index);
     }
     if (candidates.size() < 2) return select;

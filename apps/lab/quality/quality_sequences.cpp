@@ -1,10 +1,10 @@
 #include "lab/quality/quality_sequences.h"
 
 #include <algorithm>
-#include <cctype>
 #include <system_error>
 
 #include "base/error.h"
+#include "base/text/lower_case.h"
 
 namespace limpid::cli {
 namespace {
@@ -12,9 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool isGltf(const fs::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowerCase(file.extension().string());
     return extension == ".gltf" || extension == ".glb";
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/text/lower_case.h"
 #include "image/tone_curve.h"
 #include "renderer/method/parameters.h"
 #include "renderer/method/presets.h"
@@ -303,17 +304,12 @@ void drawSections(const Drawing& with) {
 }
 
 bool matches(const std::string& search, std::initializer_list<std::string_view> texts) {
-    const auto lower = [](std::string_view text) {
-        std::string result(text);
-        std::ranges::transform(result, result.begin(), [](unsigned char c) { return std::tolower(c); });
-        return result;
-    };
-    const std::string wanted = lower(search);
+    const std::string wanted = lowerCase(search);
     for (size_t at = 0; at < wanted.size();) {
         const size_t end = std::min(wanted.find(' ', at), wanted.size());
         const std::string word = wanted.substr(at, end - at);
         const bool found = std::ranges::any_of(
-            texts, [&](std::string_view text) { return lower(text).find(word) != std::string::npos; });
+            texts, [&](std::string_view text) { return lowerCase(text).find(word) != std::string::npos; });
         if (!found) return false;
         at = end + 1;
     }

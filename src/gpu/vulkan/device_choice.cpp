@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/text/format.h"
+#include "base/text/lower_case.h"
 #include "gpu/vulkan/physical_device.h"
 
 namespace limpid::gpu {
@@ -18,13 +19,6 @@ std::string describe(const std::vector<DeviceInfo>& infos) {
                            info.usable ? "" : ", unusable: it lacks " + info.whyNot);
     }
     return text;
-}
-
-std::string lowerCase(std::string_view text) {
-    std::string lower(text);
-    std::ranges::transform(lower, lower.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return lower;
 }
 
 bool matches(const DeviceInfo& info, const std::string& select) {

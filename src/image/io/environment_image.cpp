@@ -1,7 +1,6 @@
 #include "image/io/environment_image.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/log.h"
+#include "base/text/lower_case.h"
 #include "image/io/exr/exr_rows.h"
 #include "image/io/hdr.h"
 #include "image/io/rows/limits.h"
@@ -69,9 +69,7 @@ class EnvironmentBuilder {
 }  // namespace
 
 Image readEnvironmentImage(const fs::path& path, uint64_t maxMemory) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowerCase(path.extension().string());
     const bool isHdr = extension == ".hdr" || extension == ".pic";
     if (!isHdr && extension != ".exr")
         throw InputError(path, "is no environment map: .hdr and .exr are read");

@@ -1,12 +1,11 @@
 #include "scene/load/load.h"
 
-#include <algorithm>
-#include <cctype>
 #include <new>
 #include <stdexcept>
 #include <string>
 
 #include "base/error.h"
+#include "base/text/lower_case.h"
 #include "scene/gltf/gltf_load.h"
 #include "scene/load/validate.h"
 #include "scene/obj/obj.h"
@@ -15,9 +14,7 @@ namespace limpid::scene {
 namespace {
 
 Scene dispatch(const std::filesystem::path& path, const LoadOptions& options) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowerCase(path.extension().string());
     if (extension == ".gltf" || extension == ".glb") return gltf::load(path, options);
     if (extension == ".obj") return loadObj(path, options);
     throw InputError(path, "is not a supported scene format (.gltf, .glb, .obj)");

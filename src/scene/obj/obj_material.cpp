@@ -4,13 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "base/log.h"
+#include "base/text/lower_case.h"
 
 namespace limpid::scene {
 namespace {
@@ -122,10 +122,8 @@ void readStatement(const Lines& lines, std::string_view line, const std::filesys
     readMapStatement(key, lines, words, folder, m, ignored);
 }
 
-bool isNamedLight(std::string name) {
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return name.find("light") != std::string::npos;
+bool isNamedLight(std::string_view name) {
+    return lowerCase(name).find("light") != std::string::npos;
 }
 
 float largest(const vec3& v) {

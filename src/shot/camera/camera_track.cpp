@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -14,6 +13,7 @@
 #include "base/files/file.h"
 #include "base/hash.h"
 #include "base/json_float.h"
+#include "base/text/lower_case.h"
 
 namespace limpid::shot {
 namespace {
@@ -111,9 +111,7 @@ CameraParams ShotCamera::params(uint32_t width, uint32_t height) const {
 CameraTrack CameraTrack::read(const std::string& source, const GltfTiming& timing) {
     const size_t sign = std::filesystem::exists(source) ? std::string::npos : source.rfind('#');
     const std::filesystem::path file = source.substr(0, sign);
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowerCase(file.extension().string());
     if (extension != ".gltf" && extension != ".glb") return readJson(source);
     return readGltf(file, sign == std::string::npos ? "" : source.substr(sign + 1), timing);
 }
