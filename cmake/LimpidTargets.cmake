@@ -189,8 +189,8 @@ set(LIMPID_SPIRV_PASSES
   --eliminate-dead-code-aggressive --redundancy-elimination --eliminate-dead-code-aggressive --merge-blocks)
 
 # limpid_shaders(TARGET a/b.comp ... [WORDS_ONLY c.vert ...] [UNOPTIMISED a/b.comp ...]): compiles shaders below the
-# current folder and embeds each in TARGET as `limpid::shaders::b_comp` (a ShaderCode of gpu/graph/shader.h), declared
-# in the generated header "b.comp.h". WORDS_ONLY: shaders that the frame graph cannot use; only their SPIR-V is
+# current folder and embeds each in TARGET as `limpid::shaders::b_comp` (a ShaderCode of gpu/graph/shader_code.h),
+# declared in the generated header "b.comp.h". WORDS_ONLY: shaders that the frame graph cannot use; only their SPIR-V is
 # embedded (std::span<const uint32_t>). UNOPTIMISED: those of the given shaders that are not optimised, only stripped.
 #
 # First, glslc -g (without -O) writes shaders/b.comp.spv, which still has the names by which the frame graph binds

@@ -1,6 +1,6 @@
 // The sizes and names of formats.
 #include "base/error.h"
-#include "gpu/graph/shader.h"
+#include "gpu/graph/shader_code.h"
 
 namespace limpid::gpu {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu/graph/shader.h"
+#include "gpu/graph/shader_code.h"
 
 namespace limpid::gpu {
 

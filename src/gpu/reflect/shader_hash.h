@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "gpu/graph/shader.h"
+#include "gpu/graph/shader_code.h"
 
 namespace limpid::gpu {
 

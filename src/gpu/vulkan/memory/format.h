@@ -1,7 +1,7 @@
 // Converts formats to Vulkan's.
 #pragma once
 
-#include "gpu/graph/shader.h"
+#include "gpu/graph/shader_code.h"
 #include "gpu/vulkan/vk.h"
 
 namespace limpid::gpu {
