@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/files/file.h"
 #include "cli/commands.h"
@@ -32,8 +32,6 @@ std::string sceneStem(const std::string& scene) {
 namespace {
 
 using nlohmann::json;
-using Clock = std::chrono::steady_clock;
-
 struct BenchOptions {
     DeviceChoice device;
     std::vector<std::string> scenes;
@@ -50,16 +48,12 @@ struct LoadedScene {
     double treeSeconds = 0.0;  ///< building trees and tables
 };
 
-double since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 LoadedScene load(gpu::Device& device, const DeviceChoice& choice, const std::string& name) {
     LoadedScene loaded;
     loaded.scene = scene::openScene({.scene = name});
     const Clock::time_point start = Clock::now();
     const scene::SceneData data = scene::buildSceneData(loaded.scene);
-    loaded.treeSeconds = since(start);
+    loaded.treeSeconds = secondsSince(start);
     loaded.gpu = std::make_unique<scene::GpuScene>(device, data,
                                                    scene::TraceOptions{chosenTracer(choice, device), {}});
     return loaded;
@@ -146,7 +140,7 @@ Picture renderPicture(gpu::Device& device, scene::GpuScene& scene, const CameraP
     Progress progress("samples", samples);
     while (still.launch()) progress.show(still.samplesInMean());
     device.waitIdle();
-    picture.seconds = since(start);
+    picture.seconds = secondsSince(start);
     picture.samples = still.samplesInMean();
     picture.rays = still.counters().rays;
     picture.layers = still.download();

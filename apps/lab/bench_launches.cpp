@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "base/clock.h"
 #include "base/files/file.h"
 #include "cli/console/json_text.h"
 #include "image/metrics/metrics.h"
@@ -21,8 +22,6 @@ namespace limpid::cli {
 namespace {
 
 using nlohmann::json;
-using Clock = std::chrono::steady_clock;
-
 struct LaunchesBench {
     DeviceChoice device;
     std::string scene = "builtin:cornell", folder;
@@ -30,7 +29,7 @@ struct LaunchesBench {
     bool json = false;
 };
 
-struct Row {
+struct LaunchesRow {
     uint32_t perLaunch = 1, launches = 1;
     double milliseconds = 0.0;  ///< wall time for all samples; the median of the repeats
     double psnr = 0.0;          ///< against the reference
@@ -70,12 +69,12 @@ class Still {
     std::unique_ptr<scene::GpuScene> gpu_;
 };
 
-std::vector<Row> measure(gpu::Device& device, const LaunchesBench& o) {
+std::vector<LaunchesRow> measure(gpu::Device& device, const LaunchesBench& o) {
     Still still(device, o);
     const image::Image truth = still.render(4, o.referenceSamples, 1).first;
     const float stops = image::autoExposure(truth);
     RenderSettings wanted;
-    std::vector<Row> rows;
+    std::vector<LaunchesRow> rows;
     for (uint32_t n = 1; n <= o.samples; n *= 2) {
         wanted.samplesPerLaunch = n;
         if (samplesPerLaunch(device, wanted) != n) break;  // CPUs and Sobol' points have limits
@@ -92,17 +91,17 @@ std::vector<Row> measure(gpu::Device& device, const LaunchesBench& o) {
     return rows;
 }
 
-void print(const LaunchesBench& o, const std::string& device, const std::vector<Row>& rows) {
+void print(const LaunchesBench& o, const std::string& device, const std::vector<LaunchesRow>& rows) {
     fmt::print("{}, {}x{}, {}, {} samples per pixel\n{:<20}{:>10}{:>12}{:>12}\n", device, o.width, o.height,
                o.scene, o.samples, "samples a launch", "launches", "ms", "PSNR, dB");
-    for (const Row& row : rows)
+    for (const LaunchesRow& row : rows)
         fmt::print("{:<20}{:>10}{:>12.2f}{:>12.2f}\n", row.perLaunch, row.launches, row.milliseconds,
                    row.psnr);
 }
 
-void printJson(const LaunchesBench& o, const std::string& device, const std::vector<Row>& rows) {
+void printJson(const LaunchesBench& o, const std::string& device, const std::vector<LaunchesRow>& rows) {
     json results = json::array();
-    for (const Row& row : rows)
+    for (const LaunchesRow& row : rows)
         results.push_back({{"samples_per_launch", row.perLaunch},
                            {"launches", row.launches},
                            {"ms", row.milliseconds},
@@ -115,10 +114,10 @@ void printJson(const LaunchesBench& o, const std::string& device, const std::vec
 void run(const LaunchesBench& o) {
     if (!o.folder.empty()) makeFolder(o.folder);
     const OpenDevice device = openDevice(o.device);
-    const std::vector<Row> rows = measure(*device, o);
+    const std::vector<LaunchesRow> rows = measure(*device, o);
     if (!o.folder.empty()) {
         PlotLine line{fmt::format("{} samples per pixel", o.samples), {}};
-        for (const Row& row : rows) line.points.push_back({double(row.perLaunch), row.milliseconds});
+        for (const LaunchesRow& row : rows) line.points.push_back({double(row.perLaunch), row.milliseconds});
         writeTextAtomically(
             std::filesystem::path(o.folder) / "launches.svg",
             linePlot("Samples per launch, " + o.scene, {"samples per launch", "ms", true}, {line}));

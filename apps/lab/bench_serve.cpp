@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "cli/options/studio_options.h"
 #include "lab/bench.h"
@@ -37,14 +38,8 @@ struct ServeBench {
 
 #ifdef LIMPID_HAVE_SERVE
 using nlohmann::json;
-using Clock = std::chrono::steady_clock;
-
 constexpr double patience = 300.0;           ///< seconds for a scene to load, and for a frame
 constexpr double gestureSeconds = 1.0 / 60;  ///< between two gestures of a hand
-
-double since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// A browser that only decodes.
 class BenchViewer {
@@ -75,7 +70,7 @@ class BenchViewer {
         if (header.codec == serve::Codec::Vp9) {
             const auto begin = Clock::now();
             decoder_.decode(bytes.subspan(serve::frameHeaderBytes));
-            decoding_.push_back(since(begin) * 1e3);
+            decoding_.push_back(secondsSince(begin) * 1e3);
         }
         say({{"type", "received"}, {"frame", header.frame}});
         newest_ = header.message;
@@ -160,9 +155,9 @@ std::vector<double> latencies(BenchViewer& viewer, uint32_t steps) {
         viewer.steer();
         while (!viewer.hasFollowed()) {
             viewer.receive(1.0);
-            if (since(start) > patience) throw Error("no picture follows the camera");
+            if (secondsSince(start) > patience) throw Error("no picture follows the camera");
         }
-        times.push_back(since(start) * 1e3);
+        times.push_back(secondsSince(start) * 1e3);
     }
     std::ranges::sort(times);
     return times;
@@ -174,14 +169,14 @@ double rate(BenchViewer& viewer, double seconds) {
     const auto start = Clock::now();
     double next = 0.0;
     uint64_t pictures = 0;
-    for (double now = 0.0; now < seconds; now = since(start)) {
+    for (double now = 0.0; now < seconds; now = secondsSince(start)) {
         if (now >= next) {
             viewer.steer();
             next = now + gestureSeconds;
         }
         pictures += viewer.receive(std::max(next - now, 0.001));
     }
-    return static_cast<double>(pictures) / since(start);
+    return static_cast<double>(pictures) / secondsSince(start);
 }
 
 /// The medians, in the order in which a picture passes the stages.
@@ -202,7 +197,7 @@ void measure(const ServeBench& o, const std::string& url, StageTimes& stages) {
     BenchViewer viewer(std::stoi(url.substr(colon + 1)), url.substr(equals + 1), o.codec);
     const auto start = Clock::now();
     while (!viewer.receive(1.0)) {
-        if (since(start) > patience) throw Error("no picture comes");
+        if (secondsSince(start) > patience) throw Error("no picture comes");
     }
     latencies(viewer, 3);  // pipelines are made, the encoder is warm
     const std::vector<double> times = latencies(viewer, o.steps);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/log.h"
@@ -20,7 +21,6 @@
 namespace limpid::viewer {
 namespace {
 
-using studio::Clock;
 using studio::Request;
 
 constexpr double idleSeconds = 1.0;            ///< longest wait for an event
@@ -54,7 +54,8 @@ ViewerWindow::ViewerWindow(const gpu::DeviceOptions& options, const ViewSettings
       settings_(settings),
       window_("Limpid", withPanel(settings, readMemory(memoryFile(settings.kept)))),
       screen_(std::make_unique<Screen>(window_, options)),
-      shown_(std::make_shared<studio::Shown>()) {
+      shown_(std::make_shared<studio::Shown>()),
+      awaitsScene_(!settings.studio.source.scene.empty()) {
     panel_.memory = readMemory(memoryFile(settings.kept));
     chooseRange();
     const float scale = screen_->display.interface().scale();
@@ -88,11 +89,11 @@ void ViewerWindow::run(studio::Studio& studio) {
     auto last = Clock::now();
     int restless = restlessPictures;
     while (!window_.closed() && !studio.hasEnded()) {
-        const double due = shortestFrame - studio::secondsSince(last);
+        const double due = shortestFrame - secondsSince(last);
         if (window_.poll(restless > 0 ? std::max(due, 0.0) : idleSeconds)) restless = restlessPictures;
         if (!window_.input().empty() || hasNews(studio)) restless = restlessPictures;
-        if (restless == 0 || studio::secondsSince(last) < shortestFrame) continue;
-        const double seconds = std::min(studio::secondsSince(std::exchange(last, Clock::now())), longestStep);
+        if (restless == 0 || secondsSince(last) < shortestFrame) continue;
+        const double seconds = std::min(secondsSince(std::exchange(last, Clock::now())), longestStep);
         try {
             draw(studio, seconds);
         } catch (const gpu::DeviceLost& lost) {
@@ -142,7 +143,8 @@ void ViewerWindow::draw(studio::Session& session, double seconds) {
                                  pixelsOf(panel_.area.height, io.DisplayFramebufferScale.y)};
     handleInput(session, seconds);
     const Drawing with{panel_, shown_->facts, controls_};
-    if (shown_->facts.scenesShown == 0) drawStartPage(with, display.interface().thumbnails());
+    if (shown_->facts.scenesShown == 0 && !awaitsScene())
+        drawStartPage(with, display.interface().thumbnails());
     drawPanel(with, scale);
     if (panel_.showsKeys) drawKeyMap(controls_);
     sendChanges(session);
@@ -229,6 +231,14 @@ void ViewerWindow::handleEscape() {
     if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return ImGui::ClosePopupToLevel(0, true);
     if (!std::exchange(panel_.search, "").empty()) return;
     window_.close();
+}
+
+/// Whether a scene was asked for and the studio has said nothing yet. The start page would flash up
+/// otherwise.
+bool ViewerWindow::awaitsScene() {
+    const studio::Facts& facts = shown_->facts;
+    awaitsScene_ = awaitsScene_ && facts.activity.empty() && facts.fault.empty();
+    return awaitsScene_;
 }
 
 /// Remembers scenes that were opened. The steps of another scene cannot be undone.

@@ -45,6 +45,7 @@ class ViewerWindow {
     void handleInput(studio::Session& session, double seconds);
     void handleKeys();
     void handleEscape();
+    bool awaitsScene();
     void noteOpened();
     void noteCommand();
     void chooseRange();
@@ -70,6 +71,7 @@ class ViewerWindow {
     uint64_t commands_ = 0;
     std::string title_;
     int scenesShown_ = 0;
+    bool awaitsScene_ = false;    ///< the studio has not yet begun to load the scene that was asked for
     bool extended_ = false;       ///< what the studio was told of its pictures' range
     std::string fault_, values_;  ///< those of the snapshot before
 };

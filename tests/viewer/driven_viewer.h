@@ -63,12 +63,16 @@ class DrivenViewer {
                   (folder_ / "view.pid").string() + "'; wait $!; echo $? > '" + (folder_ / "code").string() +
                   "'",
               true);
+        // The start page is for those who name no scene, not to be seen while the renderer starts.
+        const bool named = !arguments.starts_with("--");
         // Without a scene, there are no frames. Before the first one of the method, there is a preview.
         waitFor("the panel", [&] {
             const auto drawn = controls();
             const auto status = drawn.find("status");
-            return drawn.contains("start.cornell") || (number("frames") > 0 && status != drawn.end() &&
-                                                       status->second.value != "compiling shaders");
+            const bool startPage = drawn.contains("start.cornell");
+            if (named && startPage) throw std::runtime_error("the start page appears");
+            return startPage || (number("frames") > 0 && status != drawn.end() &&
+                                 status->second.value != "compiling shaders");
         });
         findWindow();
     }

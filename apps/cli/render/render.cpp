@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/log.h"
@@ -44,12 +45,6 @@ void writeFrame(const RenderJob& job, uint64_t frame, const PictureFormat& forma
 }
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// A few sharp pictures over each other are no blur.
 void warnAboutShutter(const RenderJob& job) {
@@ -121,7 +116,7 @@ void render(const RenderOptions& o) {
     checkLensOf(scene::withLens(path ? path->widest() : camera, o.lens), o.lens, settings.pipeline);
     if (summary.frames == 1 && output.numbered() && chosenShard(o.longRender.shard).count > 1)
         throw UsageError("--shard: the sequence has one frame only, which is a still: name a .sums file");
-    summary.timings.loadSeconds = since(started);
+    summary.timings.loadSeconds = secondsSince(started);
 
     const Clock::time_point uploadStart = Clock::now();
     const OpenDevice device = openDevice(o.device);
@@ -135,7 +130,7 @@ void render(const RenderOptions& o) {
     const uint64_t content = sceneHash(scene, data);
     data = {};  // now on the device, like the textures
     scene.textures.clear();
-    summary.timings.uploadSeconds = since(uploadStart);
+    summary.timings.uploadSeconds = secondsSince(uploadStart);
 
     const RenderJob job{o, settings, *device, gpuScene, sequence, content, summary.frames, started};
     if (isClip(output.format(0))) {

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 
+#include "base/clock.h"
 #include "base/files/file.h"
 #include "cli/cluster/cluster_progress.h"
 #include "cli/cluster/session.h"
@@ -17,7 +18,6 @@ namespace limpid::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 using cluster::Bytes;
 using cluster::BytesView;
 

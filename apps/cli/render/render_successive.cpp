@@ -1,4 +1,5 @@
 // `limpid render` when frames build on each other: denoisers, and means kept on the device.
+#include "base/clock.h"
 #include "base/log.h"
 #include "cli/console/interrupt.h"
 #include "cli/console/progress.h"
@@ -10,8 +11,6 @@
 
 namespace limpid::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 std::map<std::string, std::string> metadataOf(const RenderJob& job, uint64_t frame, uint64_t samples) {
     const CameraParams camera = job.sequence.camera(frame, job.settings.extent);

@@ -9,13 +9,12 @@
 #include <cstring>
 #include <string>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "serve/stream/yuv.h"
 
 namespace limpid::serve {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr int timeBase = 1000;  ///< ticks a second
 constexpr int speed = 9;        ///< of libvpx, for real time: 5 to 9

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "serve/session/client.h"
@@ -26,8 +27,6 @@
 
 namespace limpid::serve {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr unsigned maxConnections = 1200;  ///< open sockets, most of which say nothing
 constexpr size_t maxClients = 32;          ///< WebSockets

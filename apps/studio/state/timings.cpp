@@ -6,10 +6,6 @@
 
 namespace limpid::studio {
 
-double secondsSince(Clock::time_point then) {
-    return std::chrono::duration<double>(Clock::now() - then).count();
-}
-
 bool due(Clock::time_point& last, double seconds) {
     if (secondsSince(last) < seconds) return false;
     last = Clock::now();

@@ -1,17 +1,14 @@
 // How long frames and their passes have taken lately: for graphs.
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <vector>
 
+#include "base/clock.h"
 #include "gpu/graph/frame_graph.h"
 
 namespace limpid::studio {
 
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point then);
 /// True once `seconds` have gone by since `last`, which is now then.
 bool due(Clock::time_point& last, double seconds);
 
