@@ -1,6 +1,8 @@
 // Runs denoisers on frames from host memory.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,17 @@ inline std::vector<dvec4> asDouble(const std::vector<float>& texels) {
     for (size_t p = 0; p < result.size(); ++p)
         result[p] = {texels[4 * p], texels[4 * p + 1], texels[4 * p + 2], texels[4 * p + 3]};
     return result;
+}
+
+/// Of all channels but alpha, of RGBA texels.
+inline float medianOf(const std::vector<float>& picture) {
+    std::vector<float> values;
+    for (size_t i = 0; i < picture.size(); ++i) {
+        if (i % 4 != 3) values.push_back(picture[i]);
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
 }
 
 class DenoiseTest : public GpuTest {

@@ -2,6 +2,7 @@
 // that elsewhere on the same wall.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <map>
 
 #include "base/log.h"
@@ -37,6 +38,18 @@ double squaredBias(const std::vector<std::vector<float>>& pictures, const image:
             sum += std::pow(mean - double{truth.pixels[3 * p + c]}, 2) - variance / seeds;
             ++count;
         }
+    }
+    return sum / static_cast<double>(count);
+}
+
+/// Returns the mean of truth^2 over the region.
+double meanSquare(const image::Image& truth, const std::vector<bool>& region) {
+    double sum = 0.0;
+    size_t count = 0;
+    for (size_t p = 0; p < pixels; ++p) {
+        if (!region[p]) continue;
+        for (size_t c = 0; c < 3; ++c) sum += std::pow(double{truth.pixels[3 * p + c]}, 2);
+        count += 3;
     }
     return sum / static_cast<double>(count);
 }
@@ -117,6 +130,8 @@ class GhostsTest : public SequenceTest {
         log::info("{}: squared bias {:.3e} where the object was ({} pixels), {:.3e} elsewhere ({})",
                   method.name, swept, sizeOf(found.swept), elsewhere, sizeOf(found.elsewhere));
         EXPECT_LE(swept, margin * elsewhere) << method.name;
+        EXPECT_LE(elsewhere, 0.01 * meanSquare(truth, found.elsewhere))
+            << method.name << " is wrong everywhere";
     }
 
     static std::ptrdiff_t sizeOf(const std::vector<bool>& region) {

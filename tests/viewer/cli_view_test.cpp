@@ -1,6 +1,8 @@
 // Tests the window on a display without a screen (Xvfb).
 #include <gmock/gmock.h>
 
+#include <numeric>
+
 #include "image/io/picture.h"
 #include "image/metrics/metrics.h"
 #include "tests/cli/cli_fixture.h"
@@ -9,6 +11,11 @@ namespace limpid {
 namespace {
 
 using testing::HasSubstr;
+
+double meanOf(const image::Image& picture) {
+    return std::accumulate(picture.pixels.begin(), picture.pixels.end(), 0.0) /
+           static_cast<double>(picture.pixels.size());
+}
 
 class CliViewTest : public CliTest {
   protected:
@@ -68,7 +75,8 @@ TEST_F(CliViewTest, EveryIntegratorAndDenoiserIsShown) {
                       options + " --screenshot '" + picture + "'");
         if (shown.code == 77) GTEST_SKIP() << shown.output;
         EXPECT_EQ(shown.code, 0) << options << "\n" << shown.output;
-        EXPECT_TRUE(fs::exists(picture)) << options;
+        ASSERT_TRUE(fs::exists(picture)) << options;
+        EXPECT_GT(meanOf(image::readPicture(picture).linear), 0.05) << options;
     }
 }
 
