@@ -39,7 +39,8 @@ void tracePixel(uvec2 pixel) {
     for (uint i = 0u; i < params.rays; ++i) {
         startSample(pixel, i);
         const vec3 direction = frame * sampleCosineHemisphere(stratified2(rng));
-        if (isOpen(place, faceNormal, direction, rng)) open += 1.0;
+        // Each ray decides anew what partly transparent surfaces it passes.
+        if (isOpen(place, faceNormal, direction, tea(rng, i))) open += 1.0;
     }
     imageStore(openness, at, vec4(vec3(place.w > 0.0 ? open / params.divisor : 1.0), 0.0));
 }

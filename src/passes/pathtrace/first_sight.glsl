@@ -36,7 +36,7 @@ void missed(inout FirstSight sight, Path path, uint depth) {
 }
 
 void met(inout FirstSight sight, Path path, Hit hit, Surface surface, Bsdf bsdf, uint depth) {
-    if (SPLIT_LOBES && depth == path.primary + 1u && sight.reflects) sight.hit.hitDistance = vec2(hit.t, 1.0);
+    if (SPLIT_LOBES && depth == path.primary + 1u && sight.reflects) sight.hit.hitDistance = vec2(path.straight + hit.t, 1.0);
     if (depth == path.primary) {
         PreviousPoint previous = PreviousPoint(surface.position, surface.normal);
         if (SPLIT_LOBES) previous = previousPoint(hit, surface, params.scene);

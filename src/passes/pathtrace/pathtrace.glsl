@@ -68,6 +68,11 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, bool seesThroug
     }
 }
 
+/// True if the path may leave the surface by a passage, which the limit of bounces does not count.
+bool canPass(Path path, Bsdf bsdf) {
+    return HAS_TRANSMISSION && isTransmitting(bsdf) && path.passages < params.maxTransmissionDepth;
+}
+
 /// True if the path goes straight on through a pane, as the light that next-event estimation samples does. Then light
 /// beyond the pane is weighted as that of the vertex where the path got its direction.
 bool crossesPane(Path path, Surface surface, Bsdf bsdf, BsdfSample next) {
@@ -124,6 +129,7 @@ void goBehind(inout Path path, inout FirstSight sight, Hit hit, float spread, ui
     path.coneWidth += spread * hit.t;
     path.straight += hit.t;
     if (depth <= path.primary) sight.traveled += hit.t;
+    if (SPLIT_LOBES && HAS_TRANSMISSION && depth > 0u && depth == path.primary) travel(sight.lens, hit.t);
     if (HAS_VOLUME) path.throughput *= exp(-hit.t * path.medium);
     const Surface surface =
         loadSurface(hit.triangle, hit.instance, hit.barycentrics, -direction, RayCone(0.0, true, false));
@@ -164,11 +170,13 @@ bool nextVertex(inout Path path, inout Branches branches, inout FirstSight sight
             HAS_TRIANGLE_LIGHTS ? lightPdf(surface, straight, path.ray.direction, path.shares, params.scene) : 0.0;
         addEmission(path, surface.emission, density, depth);
     }
-    if (depth == params.maxDepth + path.passages || surface.unlit) return false;
+    const bool last = depth == params.maxDepth + path.passages;
+    if (surface.unlit || (last && !canPass(path, bsdf))) return false;
     const bool seesThrough = isSeenThrough(path, bsdf, depth);
     const LightShares shares = path.shares;
-    addDirectLight(path, surface, bsdf, seesThrough, depth, rng);
+    if (!last) addDirectLight(path, surface, bsdf, seesThrough, depth, rng);
     if (!scatter(path, branches, surface, bsdf, seesThrough, depth, rng)) return false;
+    if (last && path.panes == 0u) path.delta = true;  // no light was sampled here that a hit would share its weight with
     if (HAS_PANES || HAS_BLENDED) {
         const bool crossed = HAS_PANES && path.panes > 0u;
         if (crossed) path.shares = shares;

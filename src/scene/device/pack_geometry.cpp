@@ -119,7 +119,7 @@ class GeometryPacker {
         const Mesh& mesh = scene_.meshes[meshIndex];
         const Transform transform(instance.transform);
         // A moving transform may become mirrored later.
-        data_.features.mirrored |= transform.mirrored || instance.movement == Movement::Rigid;
+        data_.features.mirrored |= transform.mirrored || instance.movement != Movement::Still;
         uint32_t firstTriangle = meshFirstTriangle_[meshIndex];
         uint32_t flags = transform.mirrored ? layout::INSTANCE_MIRRORED : 0u;
         if (instance.movement == Movement::Deforming) {

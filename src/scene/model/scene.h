@@ -115,9 +115,9 @@ struct Material {
     TextureRef clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture;  ///< R, G, RGB
 };
 
-/// True if the material's triangles are lights.
+/// True if the material's triangles are lights. Those of an unlit material are not, whatever it emits.
 inline bool isEmitter(const Material& material) {
-    return material.staysEmitter || material.emission != vec3(0.0f);
+    return !material.unlit && (material.staysEmitter || material.emission != vec3(0.0f));
 }
 
 /// How an instance may change from frame to frame. Follows from the chosen clip (scene/motion/movement.h).

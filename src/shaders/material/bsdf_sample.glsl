@@ -13,7 +13,8 @@ BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
         result.value.specular = mirrorReflectance(b) / b.probability.y;
     } else if (lobe == 2u) {
         wi = -b.wo;
-        result.value.specular = b.through * (1.0 - b.coatLoss) / b.probability.z;
+        // Rounding may choose this lobe although its chance is 0.
+        result.value.specular = b.through * (1.0 - b.coatLoss) / max(b.probability.z, 1e-20);
     } else {
         const float reflectance = fresnelDielectric(b.wo.z, b.eta);
         const bool transmits = u >= reflectance;

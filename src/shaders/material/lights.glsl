@@ -67,7 +67,7 @@ vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics, float
             const int material = int(record3.w * MATERIAL_TEXELS);
             const uvec3 indices = imageLoad(triangles, int(shadingTriangle)).xyz;
             float coat = HAS_CLEARCOAT ? uintBitsToFloat(imageLoad(materials, material + 7).y) : 0.0;
-            if (HAS_TEXTURES) {
+            if (HAS_TEXTURES && HAS_VERTEX_DATA) {
                 const VertexData data = loadVertexData(indices, barycentrics);
                 emission *= materialTexture(imageLoad(materials, material + 4).w, data).rgb;
                 if (HAS_CLEARCOAT) coat *= materialTexture(imageLoad(materials, material + 6).z, data).r;

@@ -38,6 +38,18 @@ vec3 objectToWorld(uint instance, vec4 p) {
                 dot(uintBitsToFloat(imageLoad(instances, at + 2)), p));
 }
 
+/// The largest number that occurs while points with coordinates up to `largest` are placed in the world. Tracers round
+/// rays to an instance's own coordinates, which may be much larger than where it stands.
+float magnitudeInWorld(uint instance, vec3 largest) {
+    const int at = int(instance * INSTANCE_TEXELS);
+    float magnitude = 0.0;
+    for (int row = 0; row < 3; ++row) {
+        const vec4 factors = abs(uintBitsToFloat(imageLoad(instances, at + row)));
+        magnitude = max(magnitude, dot(factors, vec4(largest, 1.0)));
+    }
+    return magnitude;
+}
+
 /// Returns the shading normal on the viewer's side. A mapped or interpolated normal may face away from the
 /// viewer, or reflect the view direction into the surface, which would be black. It is tilted just enough to
 /// face the viewer and to reflect along the surface.
@@ -150,15 +162,17 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
     s.instance = instanced ? hitInstance : floatBitsToUint(t1.w);
     vec3 v0 = t0.xyz, v1 = t1.xyz, v2 = t2.xyz;
     bool mirrored = false;
+    s.magnitude = 0.0;
     if (TWO_LEVEL) {
         if (instanced) {
+            s.magnitude = magnitudeInWorld(hitInstance, max(abs(v0), max(abs(v1), abs(v2))));
             v0 = objectToWorld(hitInstance, vec4(v0, 1.0));
             v1 = objectToWorld(hitInstance, vec4(v1, 1.0));
             v2 = objectToWorld(hitInstance, vec4(v2, 1.0));
         }
     }
     s.position = interpolate(v0, v1, v2, barycentrics);
-    s.magnitude = max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2)));
+    s.magnitude = max(s.magnitude, max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2))));
     const vec3 perpendicular = cross(v1 - v0, v2 - v0);
     const float doubleArea = length(perpendicular);
     s.area = 0.5 * doubleArea;

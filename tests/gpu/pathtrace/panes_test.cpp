@@ -58,6 +58,14 @@ TEST_P(PanesTest, TheMeanIsThatOfPathsThatMeetLampsByChance) {
     expectTheMeanOfChance(scene, &scene::SceneFeatures::panes, 0.5);
 }
 
+/// A path passes panes after its last bounce, too.
+TEST_P(PanesTest, TheMeanOfASingleBounceIsThatOfChance) {
+    scene::Scene scene = floorBelowLayers();
+    addLayer(scene, 1.0f, paneMaterial({0.8f, 0.9f, 1.0f}));
+    addLampAndSky(scene);
+    expectTheMeanOfChance(scene, &scene::SceneFeatures::panes, 0.7, 1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Tracers, PanesTest, testing::Values(scene::Tracer::Compute, scene::Tracer::Hardware),
                          [](const auto& listed) { return std::string(scene::toString(listed.param)); });
 

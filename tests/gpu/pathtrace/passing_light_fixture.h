@@ -68,7 +68,8 @@ class PassingLightTest : public RenderTest, public testing::WithParamInterface<s
 
     /// Of the whole picture's green, from batches of samples, with the feature that lets shadow rays pass, or
     /// without.
-    Estimate estimate(const scene::Scene& scene, bool scene::SceneFeatures::*feature, bool pass) {
+    Estimate estimate(const scene::Scene& scene, bool scene::SceneFeatures::*feature, bool pass,
+                      int maxDepth) {
         constexpr uint32_t batches = 16, samples = 64;
         scene::SceneData data = scene::buildSceneData(scene);
         EXPECT_TRUE(data.features.*feature);
@@ -76,6 +77,7 @@ class PassingLightTest : public RenderTest, public testing::WithParamInterface<s
         scene::GpuScene placed(device(), data, {GetParam(), {}});
         RenderSettings settings = centred(extent.width, extent.height, 4);
         settings.samplesPerLaunch = 16;
+        settings.pathtrace.maxDepth = maxDepth;
         FrameRenderer renderer(device(), placed, settings, UINT64_MAX);
         double sum = 0.0, squares = 0.0;
         for (uint32_t batch = 0; batch < batches; ++batch) {
@@ -95,9 +97,10 @@ class PassingLightTest : public RenderTest, public testing::WithParamInterface<s
 
     /// Compares the mean with that of paths that meet lamps by chance. The error must be at most `factor` of
     /// theirs.
-    void expectTheMeanOfChance(const scene::Scene& scene, bool scene::SceneFeatures::*feature,
-                               double factor) {
-        const Estimate by = estimate(scene, feature, false), through = estimate(scene, feature, true);
+    void expectTheMeanOfChance(const scene::Scene& scene, bool scene::SceneFeatures::*feature, double factor,
+                               int maxDepth = 8) {
+        const Estimate by = estimate(scene, feature, false, maxDepth),
+                       through = estimate(scene, feature, true, maxDepth);
         fmt::print("mean {:.4f} +- {:.4f}; light that passes {:.4f} +- {:.4f}\n", by.mean, by.error,
                    through.mean, through.error);
         EXPECT_NEAR(through.mean, by.mean, 4.0 * std::hypot(by.error, through.error));

@@ -1,4 +1,6 @@
 // Tests properties of any picture: repeatability, seeds, launches, layers, parameters, counters.
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/builtin_parts.h"
 #include "tests/gpu/render_fixture.h"
@@ -129,6 +131,57 @@ RulesTest::GlassMeans RulesTest::meansOfGlass(float transmission) {
         }
     }
     return means;
+}
+
+/// Georeferenced and CAD data have large coordinates, which a node takes back. The tracer rounds to them.
+TEST_F(RulesTest, InstancesWithLargeCoordinatesOfTheirOwnDoNotShadowThemselves) {
+    scene::MeshBuilder builder("floor");  // with so many triangles that two of them share one tree
+    for (int i = 0; i < 2304; ++i) {
+        const auto x = static_cast<float>(i % 48 - 24), z = static_cast<float>(i / 48 - 24);
+        builder.quad({x, 0, z + 1}, {x + 1, 0, z + 1}, {x + 1, 0, z}, {x, 0, z});
+    }
+    scene::Scene scene;
+    scene::Material material = lambertian(vec3(0.8f));
+    material.doubleSided = true;
+    addMesh(scene, builder.take(), material);
+    scene.lights.push_back({.kind = scene::PunctualLight::Kind::Directional,
+                            .direction = glm::normalize(vec3(-0.5f, -1.0f, -0.2f)),
+                            .intensity = vec3(2.0f)});
+    scene::addCamera(scene, {0.0f, 3.0f, 4.0f}, {0.0f, 0.0f, 0.0f}, 0.5f);
+    const mat4 turned = glm::rotate(mat4(1.0f), 0.3f, glm::normalize(vec3(1.0f, 0.2f, 0.5f)));
+    scene.instances.at(0).transform = turned;
+    scene.instances.push_back(scene.instances.at(0));
+    scene.instances.at(1).transform = glm::translate(mat4(1.0f), vec3(0.0f, -60.0f, 0.0f));
+    const Rendered expected = render(scene, small(24, 1), 4);
+    // Oblique, so that rounded coordinates lie on either side of the floor.
+    const mat4 placed = glm::translate(mat4(1.0f), {8765.4f, 9876.5f, 7654.3f}) *
+                        glm::rotate(mat4(1.0f), 0.7f, glm::normalize(vec3(0.3f, 0.9f, 1.0f)));
+    for (vec3& position : scene.meshes.at(0).positions) position = vec3(placed * vec4(position, 1.0f));
+    for (scene::Instance& instance : scene.instances)
+        instance.transform = instance.transform * glm::inverse(placed);
+    EXPECT_TRUE(scene::buildSceneData(scene).features.twoLevel);
+    const Rendered picture = render(scene, small(24, 1), 4);
+    double sum = 0.0;
+    for (size_t p = 0; p < picture.pixelCount(); ++p) {
+        EXPECT_NEAR(picture.beauty(p).x, expected.beauty(p).x, 0.02f) << p;
+        sum += double{expected.beauty(p).x} / static_cast<double>(picture.pixelCount());
+    }
+    EXPECT_GT(sum, 0.1);
+}
+
+/// KHR_materials_unlit: "the emissive factor and texture are ignored".
+TEST_F(RulesTest, UnlitMaterialsAreNoLamps) {
+    scene::Scene scene = floorScene(vec3(0.8f));
+    scene::addCamera(scene, {0.0f, 3.0f, 4.0f}, {0.0f, 0.0f, 0.0f}, 0.5f);
+    scene::MeshBuilder sign("sign");
+    scene::addLamp(sign, {0.0f, 2.0f, 0.0f}, 1.0f, 1.0f, 0);
+    scene::Material material = scene::emitter("sign", vec3(0.2f), vec3(0.0f));
+    material.unlit = true;
+    addMesh(scene, sign.take(), material);
+    const Rendered expected = render(scene, small(24, 4), 64);
+    scene.materials.back().emission = vec3(50.0f);
+    EXPECT_FALSE(isEmitter(scene.materials.back()));
+    EXPECT_EQ(render(scene, small(24, 4), 64).layers.beauty, expected.layers.beauty);
 }
 
 TEST_F(RulesTest, SeeingThroughGlassKeepsTheMean) {
