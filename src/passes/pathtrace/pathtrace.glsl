@@ -68,9 +68,9 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, bool seesThroug
     }
 }
 
-/// True if the path may leave the surface by a passage, which the limit of bounces does not count.
+/// True if the path may cross the surface after its last bounce, as light that next-event estimation samples does.
 bool canPass(Path path, Bsdf bsdf) {
-    return HAS_TRANSMISSION && isTransmitting(bsdf) && path.passages < params.maxTransmissionDepth;
+    return HAS_TRANSMISSION && isClearPane(bsdf) && path.passages < params.maxTransmissionDepth;
 }
 
 /// True if the path goes straight on through a pane, as the light that next-event estimation samples does. Then light

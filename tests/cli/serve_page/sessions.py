@@ -72,7 +72,7 @@ def test_reconnection(browser, relay):
     browser.wait("!document.body.classList.contains('lost')", 'the page does not connect again')
     browser.wait("document.getElementById('stage').dataset.frame !== ''", 'no picture after connecting again')
     type_into(browser, '#field-seed-number', '5')
-    browser.wait("document.getElementById('activity').textContent === 'finished'", 'the changed picture')
+    browser.wait("document.getElementById('activity').textContent === 'finished'", 'the changed picture', 60)
     click_on(browser, '[data-key=seed] .reset')
 
 
