@@ -60,10 +60,10 @@ function openScene(connection) {
   return {element, setScenes};
 }
 
-/// Elements by section: some stand at its start, some at its end.
-export function makeActions(store, connection, ask, status) {
-  const button = (request, text, title) => {
-    const element = make('button', {type: 'button', textContent: text, title, click: () => ask(request)});
+/// Elements by section: some stand at its start, some at its end. `moved` hears of requests that move the camera.
+export function makeActions(store, connection, ask, status, moved) {
+  const button = (request, text, title, sent = () => {}) => {
+    const element = make('button', {type: 'button', textContent: text, title, click: () => sent(ask(request))});
     element.dataset.request = request;
     return element;
   };
@@ -81,8 +81,8 @@ export function makeActions(store, connection, ask, status) {
                                     click: () => downloadPng(connection)}),
                     button('reset', 'reset', 'Means, histories and the frame number begin again'),
                 button('step', 'step', 'Renders one frame, also while rendering is stopped'), command.button), command.box),
-    camera: row(button('reset_camera', 'reset camera', 'Back to the camera of the start'),
-                button('see_all', 'see everything', 'To where the whole scene is seen')),
+    camera: row(button('reset_camera', 'reset camera', 'Back to the camera of the start', moved),
+                button('see_all', 'see everything', 'To where the whole scene is seen', moved)),
     light: row(button('add_point', 'add a point', 'A lamp at the camera'),
                button('add_sun', 'add a sun', 'A sun above the scene')),
     look: row(button('measure_exposure', 'measure exposure', 'Sets the exposure for what is seen now')),

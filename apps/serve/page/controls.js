@@ -9,17 +9,18 @@ export const brightnessSpan = {min: 0, max: 100, scale: 'logarithmic', smallest:
 
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
-/// Marks the time in which the user's hand is on a control, so that it does not jump.
-function holdWhile(input, hold) {
+/// Marks the time in which the user's hand is on a control, so that it does not jump. `begins`: more events that tell
+/// of a hand. Returns whether it is there.
+function holdWhile(input, hold, ...begins) {
   let held = false;
   const set = now => {
     if (now !== held) hold(held = now);
   };
-  input.addEventListener('pointerdown', () => set(true));
-  input.addEventListener('keydown', () => set(true));
+  for (const begin of ['pointerdown', 'keydown', ...begins]) input.addEventListener(begin, () => set(true));
   for (const end of ['pointerup', 'pointercancel', 'keyup', 'blur', 'change']) {
     input.addEventListener(end, () => set(false));
   }
+  return () => held;
 }
 
 function checkbox({id, describedBy, change}) {
@@ -40,7 +41,10 @@ function select({id, describedBy, change}, choices) {
   };
   setChoices(choices);
   input.addEventListener('change', () => change(values[input.selectedIndex][0]));
-  return {element: input, setChoices, show: value => { input.selectedIndex = values.findIndex(([v]) => v === value); }};
+  return {element: input, setChoices, show: value => {
+    const index = values.findIndex(([v]) => v === value);
+    if (input.selectedIndex !== index) input.selectedIndex = index; // setting it moves the mark in an open list
+  }};
 }
 
 /// A number to type; it is taken when the user leaves the field, presses Enter, or uses its arrows. What is being typed
@@ -122,8 +126,9 @@ function color({id, label, describedBy, change, hold, withBrightness = true}) {
   let current = [1, 1, 1];
   const input = make('input', {type: 'color', id, 'aria-label': label, 'aria-describedby': describedBy});
   const peak = () => Math.max(peakOf(current), withBrightness ? 0 : 1e-3);
+  // The browser's chooser is a window of its own: the hand in it is known by what it chooses, until it closes.
+  const isHeld = holdWhile(input, hold, 'input');
   input.addEventListener('input', () => change(linearOf(input.value, peak())));
-  holdWhile(input, hold);
   const scaled = value => current.map(v => peakOf(current) > 0 ? v * value / peakOf(current) : value);
   const brightness = withBrightness && slider({
     id: id + '-brightness', label: label + ', brightness', describedBy, span: brightnessSpan, minimum: 0, maximum: 1e9,
@@ -132,7 +137,8 @@ function color({id, label, describedBy, change, hold, withBrightness = true}) {
   return {element: make('div', {className: 'color'}, input, brightness ? brightness.element : null),
           show: value => {
             current = value;
-            if (document.activeElement !== input || peakOf(value) > 0) input.value = hexOf(value);
+            const losesHue = document.activeElement === input && peakOf(value) === 0;
+            if (!isHeld() && !losesHue) input.value = hexOf(value);
             if (brightness) brightness.show(peakOf(value));
           }};
 }

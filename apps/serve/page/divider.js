@@ -26,6 +26,7 @@ export function makeDivider(picture, names) {
     line.setPointerCapture(event.pointerId);
     event.stopPropagation();
   });
+  line.addEventListener('dblclick', event => event.stopPropagation()); // it turns no camera
   line.addEventListener('pointermove', event => {
     if (!line.hasPointerCapture(event.pointerId)) return;
     const box = stage.getBoundingClientRect();

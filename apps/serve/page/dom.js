@@ -15,9 +15,14 @@ export function make(tag, properties = {}, ...children) {
 
 export const byId = id => document.getElementById(id);
 
+/// Where something is typed.
+export function takesText(element) {
+  return element.matches('input:not([type=checkbox], [type=range], [type=color], [type=file]), textarea');
+}
+
 /// Where something is typed, or letters choose from a list.
 export function takesLetters(element) {
-  return element.matches('input:not([type=checkbox], [type=range], [type=color]), select, textarea');
+  return takesText(element) || element.matches('select');
 }
 
 /// Sets text only where it differs: live regions speak each change.
@@ -38,7 +43,8 @@ export function same(a, b) {
   return a === b || JSON.stringify(a) === JSON.stringify(b);
 }
 
-/// At most six digits, without an exponent where that is short.
+/// Whole numbers as they are, others with at most six digits; without an exponent where that is short.
 export function numberText(value) {
-  return String(Number(Number(value).toPrecision(6)));
+  const number = Number(value);
+  return String(Number.isSafeInteger(number) ? number : Number(number.toPrecision(6)));
 }

@@ -33,6 +33,7 @@ export function makeInspection(store, picture, stage, read) {
     stage.addEventListener(name, point);
     box.addEventListener(name, event => event.stopPropagation());
   }
+  box.addEventListener('dblclick', event => event.stopPropagation()); // it turns no camera
   byId('show-picture').addEventListener('click', () => store.edit({pass: ''}));
   const showValues = ({pixel, values, history}) => {
     setText(byId('inspected-values'), values ? `(${pixel.join(', ')}): ${values.map(valueText).join(', ')}` : hint);

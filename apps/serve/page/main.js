@@ -24,7 +24,8 @@ const connection = new Connection(token, {hear, see: buffer => stream.take(buffe
 const store = new Store(changes => connection.sendNumbered('edit', {changes}));
 const ask = (request, content = {}) => connection.sendNumbered('ask', {request, ...content});
 const status = new Status(store);
-const actions = makeActions(store, connection, ask, status);
+const movements = rememberMovements(store);
+const actions = makeActions(store, connection, ask, status, movements.begin);
 const panel = new Panel(store, ask, actions);
 const toolbar = makeToolbar(store, picture, ask);
 const showDivider = makeDivider(picture, () => ({
@@ -32,7 +33,6 @@ const showDivider = makeDivider(picture, () => ({
       : store.value('denoiser') === 'none' ? store.value('integrator') ?? '' : store.value('denoiser') ?? '',
   right: store.facts.compared_with || store.value('compare') || '',
 }));
-const movements = rememberMovements(store);
 let codecs = codecsHere();
 
 const stream = new Stream({
@@ -67,14 +67,11 @@ const stream = new Stream({
 const gestures = new Gestures(stage, picture, {
   steer: sum => {
     if (connection.isBusy) return !connection.isOpen; // without a connection movements are lost
-    movements.begin();
-    connection.sendNumbered('steer', sum);
+    movements.begin(connection.sendNumbered('steer', sum));
     return true;
   },
   focus: position => {
-    if (!isInside(position)) return;
-    movements.begin();
-    ask('focus', {position});
+    if (isInside(position)) movements.begin(ask('focus', {position}));
   },
   touchesPixels: toolbar.touchesPixels,
 });
@@ -127,5 +124,6 @@ connection.addEventListener('lost', () => {
       : 'The connection was lost: connecting again…';
   stream.reset();
   store.forgetEdits();
+  movements.forget();
 });
 connection.connect();

@@ -33,6 +33,7 @@ export class Panel {
   }
 
   build() {
+    this.openMatches(false); // not those that only a search has opened
     const open = new Set([...this.#sections].filter(([, details]) => details.open).map(([name]) => name));
     const again = this.#sections.size > 0;
     this.#rows.clear();
@@ -144,6 +145,7 @@ export class Panel {
     this.arrangement = arrangement;
     for (const name of first) this.main.append(this.#sections.get(name));
     for (const name of rest) this.others.append(this.#sections.get(name));
+    this.search(); // the rows may be new ones
   }
 
   groupsInUse() {

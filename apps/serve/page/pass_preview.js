@@ -1,4 +1,4 @@
-// Shows the images of the pass under the mouse while it rests there.
+// Shows the images of the pass under the mouse while it rests there. Only what a click keeps is a step of undo.
 
 const delay = 150; // milliseconds; a mouse that only passes by shows nothing
 
@@ -18,23 +18,29 @@ export class PassPreview {
   /// A click on a pass keeps its images, another one shows the picture, although the mouse is there.
   click(pass) {
     clearTimeout(this.#timer);
-    const chosen = pass === this.chosen() ? '' : pass;
+    const before = this.chosen(), chosen = pass === before ? '' : pass;
     this.#usually = null;
-    this.store.edit({pass: chosen});
+    this.#show(chosen);
+    this.store.remember({pass: before}, {pass: chosen});
   }
 
   enter(pass) {
     clearTimeout(this.#timer);
     this.#timer = setTimeout(() => {
+      if (!this.store.hasState()) return; // the connection is lost
       this.#usually ??= this.store.value('pass');
-      this.store.edit({pass});
+      this.#show(pass);
     }, delay);
   }
 
   leave() {
     clearTimeout(this.#timer);
     if (this.#usually === null) return;
-    this.store.edit({pass: this.#usually});
+    this.#show(this.#usually);
     this.#usually = null;
+  }
+
+  #show(pass) {
+    this.store.edit({pass}, {remembers: false});
   }
 }

@@ -49,7 +49,7 @@ export class Picture extends EventTarget {
     if (this.canvas.width === width && this.canvas.height === height) return;
     this.canvas.width = width;
     this.canvas.height = height;
-    this.redraw();
+    this.draw(); // the canvas is empty now, and would be shown so until the next frame
   }
 
   setExtent(extent) {

@@ -27,7 +27,9 @@ export function makePresets(store) {
   const show = () => {
     if (!presets.length || !store.hasState()) return;
     const index = presets.findIndex(preset => isInForce(preset, store));
-    if (document.activeElement !== select || select.selectedIndex > 0) select.selectedIndex = index + 1;
+    const isChoosing = document.activeElement === select && select.selectedIndex <= 0;
+    // Setting it moves the mark in an open list.
+    if (!isChoosing && select.selectedIndex !== index + 1) select.selectedIndex = index + 1;
     setText(help, sentence(presets[index]?.help ?? ''));
   };
   store.addEventListener('state', show);

@@ -4,20 +4,21 @@ import {byId} from './dom.js';
 
 const zoomStep = 2;
 
-/// Before the preview, to go back to.
-let methodBefore = {integrator: 'path', denoiser: 'none'};
-
-function togglePreview(store) {
-  const integrator = store.value('integrator');
-  if (integrator === 'preview') return store.edit(methodBefore);
-  methodBefore = {integrator, denoiser: store.value('denoiser')};
-  store.edit({integrator: 'preview'});
+/// The preview, and the method before it, whoever has chosen the preview.
+function makePreview(store) {
+  let before = {integrator: 'path', denoiser: 'none'};
+  const isOn = () => store.value('integrator') === 'preview';
+  store.addEventListener('state', () => {
+    if (!store.hasState() || isOn()) return;
+    before = {integrator: store.value('integrator'), denoiser: store.value('denoiser')};
+  });
+  return {isOn, toggle: () => store.edit(isOn() ? before : {integrator: 'preview'})};
 }
 
 export function makeToolbar(store, picture, ask) {
   const on = (id, run) => byId(id).addEventListener('click', run);
   const toggle = key => store.edit({[key]: !store.value(key)});
-  const pixels = byId('pixels');
+  const pixels = byId('pixels'), preview = makePreview(store);
   const showPressed = (id, pressed) => byId(id).setAttribute('aria-pressed', pressed);
   const showStep = (id, name, what, shortcut) => {
     byId(id).disabled = !what;
@@ -29,7 +30,7 @@ export function makeToolbar(store, picture, ask) {
   };
   on('run', () => toggle('running'));
   on('play', () => toggle('playing'));
-  on('preview', () => togglePreview(store));
+  on('preview', preview.toggle);
   on('undo', () => store.undo());
   on('redo', () => store.redo());
   on('zoom-in', () => picture.zoomBy(zoomStep));
@@ -43,7 +44,7 @@ export function makeToolbar(store, picture, ask) {
     byId('run').textContent = store.value('running') ? 'Stop' : 'Run';
     byId('play').hidden = !(store.facts.duration > 0);
     byId('play').textContent = store.value('playing') ? 'Pause clip' : 'Play clip';
-    showPressed('preview', store.value('integrator') === 'preview');
+    showPressed('preview', preview.isOn());
     showStep('undo', 'Undo', store.undoes(), 'Ctrl+Z');
     showStep('redo', 'Redo', store.redoes(), 'Ctrl+Shift+Z');
   };
@@ -53,6 +54,7 @@ export function makeToolbar(store, picture, ask) {
     byId('unzoom').disabled = picture.zoom === 1;
     byId('zoom-out').disabled = picture.zoom === 1;
   });
-  return {togglePreview: () => togglePreview(store), togglePanel, toggle,
+  const showPanel = () => document.body.classList.contains('without-panel') && togglePanel();
+  return {togglePreview: preview.toggle, togglePanel, showPanel, toggle,
           touchesPixels: () => pixels.getAttribute('aria-pressed') === 'true'};
 }

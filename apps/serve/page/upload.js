@@ -1,20 +1,34 @@
 // Files of this device as scenes and environments: dropped on the page, or chosen. Only where the program allows it.
 
-import {byId, make} from './dom.js';
+import {make, takesText} from './dom.js';
 import {say} from './status.js';
 
 const types = '.glb,.gltf,.obj,.hdr,.exr';
 const reasons = {403: 'the program was started without --uploads', 413: 'the file is too large',
-                 400: 'scenes and environments have other names', 503: 'two other files are on their way',
+                 400: 'scenes and environments have other names', 503: 'too many files are on their way or in use',
                  507: 'the program cannot store it'};
 
 /// What a name may have; the ending stays.
 const allowed = name => name.replace(/[^A-Za-z0-9._-]/g, '_');
 
+/// Anywhere on the page: a browser opens what is dropped on nothing, and the page would be gone. Text may be dropped
+/// where it is typed.
+function takeDrops(send) {
+  const isTyped = target => target instanceof Element && takesText(target); // Firefox names texts, too
+  const isOurs = ({dataTransfer, target}) => dataTransfer.types.includes('Files') || !isTyped(target);
+  addEventListener('dragover', event => isOurs(event) && event.preventDefault());
+  addEventListener('drop', event => {
+    if (!isOurs(event)) return;
+    event.preventDefault();
+    send(event.dataTransfer.files[0]);
+  });
+}
+
 export function makeUpload(connection) {
   let largest = 0;
   const send = async file => {
     if (!file) return;
+    if (largest === 0) return say(`${file.name} was not sent: ${reasons[403]}.`);
     if (file.size > largest) {
       return say(`${file.name} is larger than the ${Math.floor(largest / 1e6)} MB that the program takes.`);
     }
@@ -34,12 +48,7 @@ export function makeUpload(connection) {
   const element = make('div', {className: 'field', hidden: true},
       make('div', {className: 'head'}, make('label', {htmlFor: 'upload', textContent: 'open a file from this device'})),
       input);
-  const stage = byId('stage');
-  stage.addEventListener('dragover', event => largest > 0 && event.preventDefault());
-  stage.addEventListener('drop', event => {
-    event.preventDefault();
-    send(event.dataTransfer.files[0]);
-  });
+  takeDrops(send);
   const setLargest = bytes => {
     largest = bytes;
     element.hidden = bytes <= 0;

@@ -35,6 +35,9 @@ def test(browser, server, program, folder):
     timed('video', lambda: pictures.test_video(browser, 'vp9'))
     browser.size(900, 420)
     timed('controls', lambda: controls.test_controls(browser))
+    timed('steps', lambda: controls.test_steps(browser))
+    timed('colors', lambda: controls.test_colors(browser))
+    timed('method before preview', lambda: controls.test_method_before_preview(browser))
     timed('search', lambda: controls.test_search(browser))
     timed('presets', lambda: controls.test_presets(browser))
     timed('parts', lambda: controls.test_parts(browser))
@@ -71,7 +74,7 @@ def main():
         return NOT_TESTED
     server = Server(program, folder)
     try:
-        server.start()
+        server.start('--uploads', '1')
     except RuntimeError as fault:
         print(fault)
         return NOT_TESTED if 'was built without' in str(fault) else 1

@@ -15,6 +15,10 @@ def moved(browser, what, act):
     browser.wait(f"({EYE}).some((v, i) => Math.abs(v - {json.dumps(before)}[i]) > 1e-3)", what)
 
 
+def wait_for(browser, eye, what):
+    browser.wait(f"({EYE}).every((v, i) => Math.abs(v - {json.dumps(eye)}[i]) < 1e-3)", what)
+
+
 def test_camera(browser):
     x, y = center(browser.evaluate('''(({left, top, width, height}) => ({left, top, width, height}))
         (document.getElementById('stage').getBoundingClientRect())'''))
@@ -23,9 +27,9 @@ def test_camera(browser):
     browser.wait("document.getElementById('undo').title.includes('eye')", 'a movement as a step of undo')
     undone = browser.evaluate(EYE)
     click_on(browser, '#undo')
-    browser.wait(f"({EYE}).every((v, i) => Math.abs(v - {json.dumps(before)}[i]) < 1e-3)", 'the movement, undone')
+    wait_for(browser, before, 'the movement, undone')
     click_on(browser, '#redo')
-    browser.wait(f"({EYE}).every((v, i) => Math.abs(v - {json.dumps(undone)}[i]) < 1e-3)", 'the movement, done again')
+    wait_for(browser, undone, 'the movement, done again')
     moved(browser, 'the wheel', lambda: browser.wheel(x, y, -200))
     moved(browser, 'flying', lambda: [browser.call('Input.dispatchKeyEvent', type='keyDown', key='w', code='KeyW'),
                                       time.sleep(0.2),
@@ -33,8 +37,19 @@ def test_camera(browser):
     target = browser.evaluate("document.getElementById('field-target').value")
     browser.click(x - 70, y - 30, count=2)
     browser.wait(f"document.getElementById('field-target').value !== '{target}'", 'a double click')
-    click_on(browser, '[data-request=reset_camera]')
-    browser.wait(f"({EYE}).every((v, i) => Math.abs(v - {json.dumps(before)}[i]) < 1e-3)", 'the first camera')
+    # Steps end when the camera rests, or is moved back: from here the next one begins.
+    click_on(browser, '#undo')
+    click_on(browser, '#redo')
+    here = browser.evaluate(EYE)
+    for button in ('reset_camera', 'see_all', 'reset_camera'):
+        moved(browser, button, lambda: click_on(browser, f'[data-request={button}]'))
+        click_on(browser, '#undo')
+        wait_for(browser, here, f'{button}, undone')
+        click_on(browser, '#redo')
+        moved_to = browser.wait(f"({EYE}).some((v, i) => Math.abs(v - {json.dumps(here)}[i]) > 1e-3) && {EYE}",
+                                f'{button}, done again')
+        here = moved_to
+    wait_for(browser, before, 'the first camera')
     browser.wheel(x, y, -400, control=True)
     browser.wait("parseFloat(document.getElementById('unzoom').textContent) > 1", 'larger pixels')
     click_on(browser, '#unzoom')

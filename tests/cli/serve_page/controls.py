@@ -21,6 +21,91 @@ def test_controls(browser):
     browser.key('z', 10)
     browser.wait("document.getElementById('field-seed-number').valueAsNumber === 7", 'redo')
     browser.key('z', 2)
+    type_into(browser, '#field-seed-number', '1234567')
+    check(value_of(browser, 'seed') == 1234567, f'a long number becomes {value_of(browser, "seed")}')
+    click_on(browser, '[data-key=seed] .reset')
+
+
+def test_steps(browser):
+    """Undo, of a store of its own: how many steps there are, what one is, and which go with the scene."""
+    steps = browser.evaluate('''(async () => {
+      const {Store} = await import('/store.js'), {rememberMovements} = await import('/movements.js');
+      const store = new Store(() => 1), movements = rememberMovements(store), counts = {};
+      const rest = () => new Promise(done => setTimeout(done, 1000));
+      const count = () => {
+        let steps = 0;
+        for (; store.undoes() !== undefined; ++steps) store.undo();
+        return steps;
+      };
+      store.receiveState({a: 0, lights: [0], background: [1, 1, 1], eye: [0, 0, 0]}, 0);
+      for (let i = 1; i <= 250; ++i) store.edit({a: i});
+      counts.most = count();
+      store.hold('a', true);
+      store.edit({a: 1001});
+      await rest();
+      store.edit({a: 1002});
+      store.hold('a', false);
+      await rest();
+      store.hold('a', true);
+      store.edit({a: 1003});
+      store.hold('a', false);
+      counts.drags = count();
+      store.edit({a: 1004});
+      store.edit({lights: [1]});
+      store.receiveState({lights: [0, 0]}, 0);
+      counts.lights = count();
+      store.receiveFacts({scene: 'one'});
+      store.edit({a: 1005});
+      store.receiveFacts({scene: 'two'});
+      counts.scene = count();
+      movements.begin(7);
+      await rest(); // a slow frame
+      store.acknowledge(7, 1);
+      store.receiveState({eye: [1, 1, 1]}, 1);
+      await rest();
+      counts.movements = count();
+      store.edit({background: null});
+      counts.background = store.value('background');
+      return counts;
+    })()''')
+    expected = {'most': 200, 'drags': 2, 'lights': 1, 'scene': 0, 'movements': 1, 'background': None}
+    check(steps == expected, f'steps of undo: {steps}')
+
+
+def test_colors(browser):
+    """The browser's chooser is no part of the page: all that is chosen in it is one step, and it does not jump."""
+    color = "document.getElementById('light-0-color').value"
+    before = browser.evaluate(color)
+    browser.evaluate('''(() => {
+      const input = document.getElementById('light-0-color');
+      for (const color of ['#ff8080', '#804040', '#802020']) {
+        input.value = color;
+        input.dispatchEvent(new Event('input'));
+      }
+    })()''')
+    check(browser.evaluate(color) == '#802020', 'the chooser jumps to the brightest colour of this hue')
+    browser.evaluate("document.getElementById('light-0-color').dispatchEvent(new Event('change'))")
+    browser.wait(f"{color} !== '#802020'", 'the colour at its brightest')
+    click_on(browser, '#undo')
+    browser.wait(f"{color} === '{before}'", 'the colour, undone')
+    settle(browser, 'the light as it was')
+
+
+def test_method_before_preview(browser):
+    """The key V goes back to it, however the preview was chosen, and so does undo."""
+    denoiser = "document.getElementById('field-denoiser').selectedOptions[0].textContent"
+    choose(browser, 'denoiser', 'atrous')
+    settle(browser, 'the denoised picture')
+    for go_back in (lambda: browser.type('v'), lambda: click_on(browser, '#undo')):
+        choose(browser, 'integrator', 'preview')
+        browser.wait(f"{denoiser} === 'none'", 'the preview')
+        browser.evaluate("document.getElementById('stage').focus()")
+        go_back()
+        browser.wait(f"{denoiser} === 'atrous'", 'the method before the preview')
+        settle(browser, 'the denoised picture, again')
+        check(browser.evaluate(denoiser) == 'atrous', 'the method before the preview does not stay')
+    choose(browser, 'denoiser', 'none')
+    settle(browser, 'the path tracer')
 
 
 def test_search(browser):

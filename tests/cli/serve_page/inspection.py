@@ -92,7 +92,9 @@ def test_preview(browser):
         browser.mouse('mouseMoved', *center(browser.evaluate(f"""(({{left, top, width, height}}) =>
             ({{left, top, width, height}}))(({row.format(name)}).getBoundingClientRect())""")), 0)
 
+    time.sleep(1)  # a movement becomes a step of undo when the camera rests
     choose(browser, 'denoiser', 'svgf')
+    step = browser.evaluate("document.getElementById('undo').title")
     browser.wait(f'Boolean({row.format(PASS)})', 'the pass')
     rest_on(PASS)
     browser.wait(f"({shown}).startsWith('{PASS}')", 'the pass under the mouse')
@@ -100,12 +102,18 @@ def test_preview(browser):
     browser.wait(f"({shown}).startsWith('svgf/compose')", 'the next pass under the mouse')
     browser.mouse('mouseMoved', x, y, 0)
     browser.wait(f"({shown}) === ''", 'the picture, as the mouse left')
+    now = browser.evaluate("document.getElementById('undo').title")
+    check(now == step, f'what is only shown for the mouse is a step of undo: {step} becomes {now}')
     click_on_pass(browser, PASS)
     browser.wait(f"({shown}).startsWith('{PASS}')", 'the chosen pass')
     rest_on('svgf/compose')
     browser.wait(f"({shown}).startsWith('svgf/compose')", 'the pass under the mouse, again')
     browser.mouse('mouseMoved', x, y, 0)
     browser.wait(f"({shown}).startsWith('{PASS}')", 'the chosen pass, again')
+    click_on(browser, '#undo')
+    browser.wait(f"({shown}) === ''", 'the choice, undone')
+    click_on(browser, '#redo')
+    browser.wait(f"({shown}).startsWith('{PASS}')", 'the choice, done again')
     click_on(browser, '#show-picture')
     browser.wait(f"!({INSPECTED})", 'the picture')
 

@@ -25,9 +25,9 @@ class Server:
     def options(self):
         return [SCENE, '--device', 'cpu', '--max-spp', str(SAMPLES), '--state', str(self.state)]
 
-    def start(self):
+    def start(self, *options):
         self.process = subprocess.Popen(
-            [self.program, 'serve', *self.options(), '--port', str(self.port), '--uploads', '1'],
+            [self.program, 'serve', *self.options(), '--port', str(self.port), *options],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.address = self.process.stdout.readline().strip()
         if not self.address:

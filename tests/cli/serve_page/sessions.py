@@ -8,16 +8,28 @@ from browser import check
 from page import box_of, center, click_on, open_page, settle, type_into, value_of
 
 
-def test_upload(browser, folder):
-    """A scene of this device, dropped on the picture."""
-    before = browser.evaluate("document.getElementById('scene-name').textContent")
-    file = pathlib.Path(folder) / 'dropped.obj'
-    file.write_text('v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n')
-    x, y = center(box_of(browser, '#stage'))
+def drop(browser, file, selector):
+    x, y = center(box_of(browser, selector))
     data = {'items': [], 'files': [str(file)], 'dragOperationsMask': 1}
     for kind in ('dragEnter', 'dragOver', 'drop'):
         browser.call('Input.dispatchDragEvent', type=kind, x=x, y=y, data=data)
-    browser.wait("document.getElementById('scene-name').textContent.includes('dropped')", 'the dropped scene')
+
+
+def test_upload(browser, folder):
+    """Scenes of this device, dropped on the picture and beside it. Undo does not go on into another scene."""
+    before = browser.evaluate("document.getElementById('scene-name').textContent")
+    for name, selector, seed in (('dropped', '#stage', 3), ('beside', '#panel-head', 4)):
+        type_into(browser, '#field-seed-number', str(seed))
+        browser.wait("!document.getElementById('undo').disabled", f'{name}: a step of undo')
+        file = pathlib.Path(folder) / f'{name}.obj'
+        file.write_text('v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n')
+        drop(browser, file, selector)
+        browser.wait(f"document.getElementById('scene-name').textContent.includes('{name}')", f'the scene {name}')
+        check(browser.evaluate("document.getElementById('undo').disabled"), 'undo goes on into another scene')
+        settle(browser, name)
+        browser.evaluate("document.getElementById('dismiss').click()")  # what was opened, above the seed
+        click_on(browser, '[data-key=seed] .reset')
+        browser.wait("document.getElementById('field-seed-number').valueAsNumber === 0", 'the default seed')
     browser.evaluate('''(() => {
       const select = document.getElementById('open-scene');
       select.value = [...select.options].map(o => o.value).find(value => value === 'builtin:cornell');
@@ -80,8 +92,11 @@ def test_restart(browser, server, relay):
     """A program that is started again has another token: the page says where to go, which works."""
     server.stop()
     browser.wait("document.body.classList.contains('lost')", 'the page does not see that the program has ended')
-    server.start()
+    server.start()  # without --uploads
     browser.wait("document.getElementById('connection').textContent.includes('open the address that it prints')",
                  'the page does not say where to go')
     open_page(browser, relay.address())
     check(browser.evaluate("!document.body.classList.contains('lost')"), 'the new address does not work')
+    drop(browser, server.state, '#panel-head')
+    browser.wait("document.getElementById('page-message').textContent.includes('without --uploads')",
+                 'the page does not say that no file is taken')
