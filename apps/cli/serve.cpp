@@ -3,6 +3,9 @@
 
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/files/file.h"
@@ -11,6 +14,7 @@
 #include "commands.h"
 #ifdef LIMPID_HAVE_SERVE
 #include "serve/serve.h"
+#include "serve/web/access.h"
 #include "studio/studio.h"
 #endif
 
@@ -20,6 +24,7 @@ namespace {
 struct ServeOptions {
     StudioChoice studio;
     std::string bind = "127.0.0.1", certificate, key, files;
+    std::vector<std::string> origins;
     uint16_t port = 8080;
     uint32_t uploads = 0;  ///< MB
 };
@@ -36,6 +41,8 @@ void run(const ServeOptions& o) {
     requireFile(o.certificate);
     requireFile(o.key);
 #ifdef LIMPID_HAVE_SERVE
+    std::vector<std::string> origins;
+    for (const std::string& text : o.origins) origins.push_back(serve::parseOrigin(text));
     studio::StudioSettings settings;
     apply(o.studio, settings);
     settings.writesFiles = false;  // clients are elsewhere
@@ -48,6 +55,7 @@ void run(const ServeOptions& o) {
                   .port = o.port,
                   .certificate = o.certificate,
                   .key = o.key,
+                  .origins = std::move(origins),
                   .files = o.files,
                   .uploads = uint64_t{o.uploads} * 1000000},
                  stop, [](const std::string& url) {
@@ -78,13 +86,18 @@ void addServeCommand(CLI::App& app) {
     command->add_option("--certificate", o->certificate,
                         "PEM file with the certificate, for HTTPS; with --key");
     command->add_option("--key", o->key, "PEM file with the certificate's private key");
+    command
+        ->add_option("--origin", o->origins,
+                     "Address at which a proxy offers the page, as https://limpid.example: it may connect, "
+                     "too (repeatable)")
+        ->allow_extra_args(false);
     command->add_option("--files", o->files,
                         "Folder whose scenes may be opened in the browser; default: none");
     command
         ->add_option(
             "--uploads", o->uploads,
-            "Size in MB up to which scenes (one file) and environments may be uploaded; the newest four are "
-            "kept in a temporary folder until the server ends; default: none")
+            "Size in MB up to which scenes (one file) and environments may be uploaded; the newest four and "
+            "what is shown are kept in a temporary folder until the server ends; default: none")
         ->check(CLI::Range(1, 4000));
     command->footer(
         "The address that is printed contains a secret: who has it can use everything here. From another "

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "serve/stream/stream_settings.h"
 #include "studio/session.h"
@@ -15,10 +16,12 @@ struct ServeSettings {
     std::string bind = "127.0.0.1";          ///< address that connections are accepted on
     uint16_t port = 0;                       ///< 0: a free one
     std::filesystem::path certificate, key;  ///< PEM files for TLS; both or none
-    std::filesystem::path files;             ///< folder whose scenes may be opened; empty: only built-in ones
-    uint64_t uploads = 0;                    ///< bytes of the largest file that may be uploaded; 0: none
-    unsigned headerSeconds = 10;             ///< for a connection to say what it wants
-    double stillSeconds = 60.0;              ///< for /picture.png to wait for a picture
+    /// Of the page, beside its own address: those of proxies that pass it on (web/access.h, parseOrigin()).
+    std::vector<std::string> origins = {};
+    std::filesystem::path files;  ///< folder whose scenes may be opened; empty: only built-in ones
+    uint64_t uploads = 0;         ///< bytes of the largest file that may be uploaded; 0: none
+    unsigned headerSeconds = 10;  ///< for a connection to say what it wants
+    double stillSeconds = 60.0;   ///< for /picture.png to wait for a picture
     StreamSettings stream;
 };
 

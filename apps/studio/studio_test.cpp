@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -11,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <glm/gtc/packing.hpp>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -214,7 +216,10 @@ TEST_F(StudioTest, ScenesLoadBesideTheRendering) {
     std::atomic<bool> go = false;
     const auto slow = [&](const scene::SceneSource& source, const Progress& progress) {
         if (source.scene == "builtin:lab-mirror") {
-            while (!go) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            while (!go) {
+                progress.at(0.0);
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            }
         }
         return scene::openScene(source, progress);
     };
@@ -237,6 +242,145 @@ TEST_F(StudioTest, ScenesLoadBesideTheRendering) {
                              [](const Shown& s) { return s.facts.scenesShown == 2; });
     EXPECT_NE(opened->facts.scene, first->facts.scene);
     EXPECT_TRUE(opened->facts.fault.empty());
+    studio->finish();
+}
+
+/// A hand that drags a colour asks for many scenes. None but the last is needed.
+TEST_F(StudioTest, OneSceneIsLoadedAtATime) {
+    std::atomic<int> running = 0, most = 0, loads = 0;
+    const auto studio = make(small(), [&](const scene::SceneSource& source, const Progress& progress) {
+        const std::shared_ptr<void> atEnd(nullptr, [&](void*) { --running; });
+        most = std::max(most.load(), ++running);
+        ++loads;
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        return scene::openScene(source, progress);
+    });
+    rest(*studio);
+    uint64_t last = 0;
+    for (int i = 1; i <= 20; ++i) {
+        last = studio->edit({{"background", {0.1 * i, 0.5, 0.5}}});
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    const auto shown = wait(*studio, last, [](const Shown& s) { return s.facts.activity.empty(); });
+    EXPECT_EQ(shown->state.lights.background.r, 2.0f);
+    EXPECT_EQ(shown->facts.fault, "");
+    EXPECT_GE(shown->facts.scenesShown, 2);
+    EXPECT_EQ(most, 1);
+    EXPECT_LT(loads, 20);
+    studio->finish();
+}
+
+/// Changes while a scene is loaded are made to that one, and what is given up leaves the lights as they are.
+TEST_F(StudioTest, ChangesWhileASceneIsLoadedAddUp) {
+    std::atomic<bool> go = true;
+    const auto studio = make(small(), [&](const scene::SceneSource& source, const Progress& progress) {
+        while (!go) {
+            progress.at(0.0);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return scene::openScene(source, progress);
+    });
+    const size_t own = rest(*studio)->state.lights.lights.size();
+    const auto lights = [](size_t count) {
+        return [count](const Shown& s) {
+            return s.facts.activity.empty() && s.state.lights.lights.size() == count;
+        };
+    };
+    go = false;
+    studio->ask({Kind::AddPoint});
+    const uint64_t sun = studio->ask({Kind::AddSun});
+    wait(*studio, sun, [](const Shown& s) { return s.facts.activity == "changing the lights"; });
+    go = true;
+    const auto lit = wait(*studio, sun, lights(own + 2));
+    const int first = lit->state.lights.firstAdded;
+
+    go = false;
+    wait(*studio, studio->ask({.kind = Kind::RemoveLamp, .index = first}),
+         [](const Shown& s) { return !s.facts.activity.empty(); });
+    const auto kept = wait(*studio, studio->ask({Kind::CancelLoading}), lights(own + 2));
+    const auto bright = rest(*studio);
+    json dimmed = toJson(kept->state)["lights"];
+    for (json& light : dimmed) light["brightness"] = 0.25;
+    EXPECT_NE(rest(*studio, studio->edit({{"lights", dimmed}}))->picture->texels, bright->picture->texels);
+
+    go = false;
+    studio->ask({.kind = Kind::RemoveLamp, .index = first});
+    studio->ask({.kind = Kind::RemoveLamp, .index = first});  // is going already
+    const uint64_t removed = studio->ask({.kind = Kind::RemoveLamp, .index = first + 1});
+    wait(*studio, removed, [](const Shown& s) { return !s.facts.activity.empty(); });
+    go = true;
+    const auto dark = wait(*studio, removed, lights(own));
+    for (const scene::LightControl& light : dark->state.lights.lights) EXPECT_EQ(light.brightness, 0.25f);
+
+    go = false;
+    studio->ask({.kind = Kind::Open, .file = "builtin:lab-mirror"});
+    const uint64_t added = studio->ask({Kind::AddSun});
+    wait(*studio, added, [](const Shown& s) { return s.facts.activity == "loading builtin:lab-mirror"; });
+    go = true;
+    const auto opened = wait(*studio, added, [](const Shown& s) { return s.facts.activity.empty(); });
+    EXPECT_EQ(opened->facts.message, "opened builtin:lab-mirror");
+    EXPECT_THAT(opened->facts.files, testing::ElementsAre("builtin:lab-mirror"));
+    const LightDesk& desk = opened->state.lights;
+    EXPECT_TRUE(std::ranges::any_of(desk.lights, [&](const auto& light) { return desk.isAdded(light); }));
+    studio->finish();
+}
+
+/// Pictures that no device can have: the first one, and one of a setting that is changed.
+TEST_F(StudioTest, AFrameThatCannotBeRenderedEndsNothing) {
+    StudioSettings settings = small();
+    settings.render.extent = {40000, 8};
+    settings.resolution = Resolution::Quarter;
+    const auto settled = [](const Shown& s) { return s.picture && !s.facts.computing; };
+    auto studio = make(settings);
+    const auto quarter = wait(*studio, 0, settled);
+    EXPECT_EQ(quarter->picture->extent, (gpu::Extent{10000, 2}));
+    const auto failed = wait(*studio, studio->edit({{"resolution", "full"}}),
+                             [](const Shown& s) { return !s.facts.fault.empty(); });
+    EXPECT_THAT(failed->facts.fault, HasSubstr("the settings before are used again"));
+    EXPECT_EQ(toJson(failed->state)["resolution"], "1/4");
+    EXPECT_TRUE(failed->state.running);
+    const auto seeded = wait(*studio, studio->edit({{"seed", 3}}), settled);
+    EXPECT_NE(seeded->picture->texels, quarter->picture->texels);
+    EXPECT_EQ(seeded->facts.fault, "");
+    studio->finish();
+
+    settings.resolution = Resolution::Full;
+    studio = make(settings);
+    const auto stopped = wait(*studio, 0, [](const Shown& s) { return !s.facts.fault.empty(); });
+    EXPECT_THAT(stopped->facts.fault, HasSubstr("rendering is stopped"));
+    EXPECT_FALSE(stopped->state.running);
+    const auto smaller = rest(*studio, studio->edit({{"viewport", {64, 48}}, {"running", true}}));
+    EXPECT_EQ(smaller->facts.fault, "");
+    studio->finish();
+}
+
+/// Who chooses a camera, or a path, can go back.
+TEST_F(StudioTest, TheFreeCameraStaysWhereTheHandHasLeftIt) {
+    const auto studio = make(small());
+    const CameraPose home = rest(*studio)->state.pose;
+    const auto orbited = rest(*studio, studio->steer({.orbit = {0.3f, 0.1f}}));
+    const std::vector<std::string>& cameras = orbited->facts.cameras;
+    const auto path = std::ranges::find(cameras, "orbit") - cameras.begin();
+    EXPECT_NE(rest(*studio, studio->edit({{"camera", 1}}))->state.pose, orbited->state.pose);
+    EXPECT_EQ(rest(*studio, studio->edit({{"camera", 0}}))->state.pose, orbited->state.pose);
+    wait(*studio, studio->edit({{"camera", path}}), [](const Shown& s) { return s.state.playing; });
+    const auto placed = rest(*studio, studio->edit({{"camera", 0},
+                                                    {"playing", false},
+                                                    {"eye", toJson(orbited->state)["target"]},
+                                                    {"target", toJson(orbited->state)["eye"]}}));
+    EXPECT_LT(glm::length(placed->state.pose.eye - orbited->state.pose.target), 1e-4f);
+    const auto paused = rest(*studio, studio->edit({{"camera", path}, {"playing", false}}));
+    EXPECT_EQ(paused->state.camera, path);
+    EXPECT_FALSE(paused->state.playing) << "a state says that it rests";
+    EXPECT_EQ(rest(*studio, studio->ask({Kind::ResetCamera}))->state.pose, home);
+
+    const auto flat = rest(*studio, studio->edit({{"half_height", 0.5}}));
+    EXPECT_EQ(flat->state.halfHeight, 0.5f);
+    EXPECT_EQ(flat->state.pose, home);
+    const auto nearer = rest(*studio, studio->steer({.zoom = 1.0f}));
+    EXPECT_NE(nearer->state.halfHeight, 0.5f);
+    EXPECT_NE(nearer->picture->texels, flat->picture->texels);
+    EXPECT_EQ(rest(*studio, studio->edit({{"half_height", 0.0}}))->state.halfHeight, 0.0f);
     studio->finish();
 }
 
@@ -472,7 +616,10 @@ TEST_F(StudioTest, TheCommandLineAlwaysWorks) {
     studio->steer({.orbit = {0.2f, 0.0f}});
     json lights = toJson(rest(*studio)->state)["lights"];
     lights[0]["brightness"] = 3.0;
-    rest(*studio, studio->edit({{"lights", lights}, {"exposure", 1.25}, {"svgf.levels", 3}, {"seed", 4}}));
+    rest(
+        *studio,
+        studio->edit(
+            {{"lights", lights}, {"exposure", 1.25}, {"svgf.levels", 3}, {"seed", 4}, {"half_height", 1.5}}));
     const std::string command = commandOf(*studio);
     EXPECT_THAT(command, HasSubstr("limpid view builtin:cornell-moving"));
     EXPECT_THAT(command, HasSubstr("--state state.json"));
@@ -492,6 +639,23 @@ TEST_F(StudioTest, TheCommandLineAlwaysWorks) {
     }
     EXPECT_EQ(got, expected);
     studio->finish();
+
+    // Where no file may be written, the command writes it.
+    again.writesFiles = false;
+    std::filesystem::remove("state.json");
+    studio = make(again);
+    rest(*studio);
+    studio->steer({.orbit = {0.2f, 0.0f}});
+    const auto turned = rest(*studio, studio->edit({{"svgf.levels", 2}}));
+    const std::string both = commandOf(*studio);
+    EXPECT_FALSE(std::filesystem::exists("state.json"));
+    const size_t end = both.find(" && limpid serve builtin:cornell-moving");
+    ASSERT_NE(end, std::string::npos) << both;
+    EXPECT_EQ(std::system(both.substr(0, end).c_str()), 0);
+    json written = readStateFile("state.json");
+    EXPECT_EQ(written, toJson(turned->state));
+    studio->finish();
+    again.writesFiles = true;
 
     again.state = {{"lights", json::array()}};
     studio = make(again);

@@ -190,6 +190,11 @@ void ViewerWindow::sendChanges(studio::Session& session) {
 void ViewerWindow::noteStep(nlohmann::json changes) {
     changes.erase("viewport");
     changes.erase("pass");
+    // A hand may move on from the camera that is chosen: undo puts the free one back to where it was.
+    if (changes.contains("camera") && panel_.values.at("camera") == 0) {
+        for (const char* const key : {"eye", "target", "up", "fov", "half_height"})
+            changes[key] = panel_.values.at(key);
+    }
     if (!panel_.steps) panel_.history.note(changes, panel_.values);
 }
 

@@ -55,6 +55,11 @@ TEST_F(CliServeTest, RefusesAndWarns) {
     put("a", "no certificate");
     put("b", "no key");
     expect("serve " + std::string(small) + pair, 1, "the certificate or its key cannot be read");
+    expect("serve " + std::string(small) + "--port 0 --origin limpid.example", 2, "is no origin");
+    const Result proxied =
+        serve("--origin https://limpid.example",
+              "curl -s -H 'Host: limpid.example' -o /dev/null -w 'status %{http_code}\\n' \"$url\"");
+    EXPECT_NE(proxied.output.find("status 200"), std::string::npos) << proxied.output;
     const Result open = serve("--bind 0.0.0.0", "true");
     EXPECT_NE(open.output.find("can be reached from other machines"), std::string::npos) << open.output;
 }

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "serve/stream/inspection.h"
 #include "studio/compare/history_text.h"
+#include "studio/loop/mailbox.h"
 #include "studio/state/state_json.h"
 
 namespace limpid::serve {
@@ -12,10 +13,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double messagesPerSecond = 300.0;
-constexpr double bytesOfAMessage = 8192.0;  ///< so many count as one more message
-constexpr size_t maxReplies = 1000;         ///< of a client that does not read them
-constexpr double betweenFacts = 0.1;        ///< seconds
+constexpr double messagesPerSecond = 1000.0;         ///< mice of 240 Hz, and the answers to pictures
+constexpr double bytesOfAMessage = 65536.0;          ///< so many count as one more message
+constexpr size_t maxWaitingBytes = size_t{4} << 20;  ///< of edits that the renderer has not handled yet
+constexpr size_t maxReplies = 4000;                  ///< of a client that does not read them
+constexpr double betweenFacts = 0.1;                 ///< seconds
 
 template <typename... Functions>
 struct Overloaded : Functions... {
@@ -38,7 +40,7 @@ Client::~Client() {
     streamer_.remove(stream_);
 }
 
-/// Long messages count for more: the renderer keeps all until its frame ends.
+/// Long messages count for more.
 bool Client::isWithinRate(size_t bytes) {
     const auto now = Clock::now();
     allowance_ +=
@@ -47,12 +49,32 @@ bool Client::isWithinRate(size_t bytes) {
     return allowance_ >= 0.0;
 }
 
+/// The renderer keeps all edits until its frame ends, but of those of all lights the newest one only.
+bool Client::isWithinMemory() {
+    const uint64_t handled = session_.shown()->messages;
+    while (!waiting_.empty() && waiting_.front().number <= handled) {
+        waitingBytes_ -= waiting_.front().bytes;
+        waiting_.pop_front();
+    }
+    return waitingBytes_ <= maxWaitingBytes;
+}
+
+uint64_t Client::edit(nlohmann::json changes, size_t bytes) {
+    const bool replaces = studio::isOfLightsAlone(changes);
+    const uint64_t number = session_.edit(std::move(changes));
+    if (!replaces) {
+        waiting_.push_back({number, bytes});
+        waitingBytes_ += bytes;
+    }
+    return number;
+}
+
 bool Client::receive(std::string_view part, bool last) {
     if (partial_.size() + part.size() > maxTextBytes) return false;
     partial_ += part;
     if (!last) return true;
     const std::string text = std::exchange(partial_, {});
-    if (!isWithinRate(text.size())) return false;
+    if (!isWithinRate(text.size()) || !isWithinMemory()) return false;
     try {
         handle(text);
     } catch (const UsageError& fault) {
@@ -69,7 +91,7 @@ void Client::handle(std::string_view text) {
     uint64_t number = 0;
     std::visit(Overloaded{[&](const Start& start) { streamer_.start(stream_, start.vp9); },
                           [&](const Received& received) { streamer_.received(stream_, received.frame); },
-                          [&](Edit& edit) { number = session_.edit(std::move(edit.changes)); },
+                          [&](Edit& edit) { number = this->edit(std::move(edit.changes), text.size()); },
                           [&](const studio::Gesture& gesture) { number = session_.steer(gesture); },
                           [&](studio::Request& request) { number = session_.ask(std::move(request)); },
                           [&](const Open& open) {

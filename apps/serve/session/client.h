@@ -32,7 +32,9 @@ class Client {
     using Clock = std::chrono::steady_clock;
 
     bool isWithinRate(size_t bytes);
+    bool isWithinMemory();
     void handle(std::string_view text);
+    uint64_t edit(nlohmann::json changes, size_t bytes);
     std::string stateText(const studio::Shown& shown);
 
     studio::Session& session_;
@@ -45,6 +47,13 @@ class Client {
     std::deque<std::string> replies_;
     double allowance_;  ///< messages that the client may still send now
     Clock::time_point allowanceAt_ = Clock::now();
+    /// Edits that the renderer may not have handled yet, and the sum of their bytes.
+    struct Waiting {
+        uint64_t number;
+        size_t bytes;
+    };
+    std::deque<Waiting> waiting_;
+    size_t waitingBytes_ = 0;
     nlohmann::json state_, facts_;  ///< as they were told last
     uint64_t snapshot_ = 0, message_ = 0;
     Clock::time_point factsAt_{};

@@ -90,9 +90,24 @@ TEST_F(ClientTest, TellsWhyTheHistoryWasRejected) {
 
 TEST_F(ClientTest, LimitsTheRate) {
     int said = 0;
-    while (said < 1000 && say(R"({"type":"steer"})")) ++said;
-    EXPECT_GE(said, 290);
-    EXPECT_LT(said, 600);
+    while (said < 5000 && say(R"({"type":"steer"})")) ++said;
+    EXPECT_GE(said, 990);
+    EXPECT_LT(said, 3000);
+}
+
+/// A renderer that is busy keeps what is said to it.
+TEST_F(ClientTest, LimitsWhatWaitsForTheRenderer) {
+    const auto edit = [](const char* key, size_t bytes) {
+        return json{{"type", "edit"}, {"changes", {{key, std::string(bytes, 'x')}}}}.dump();
+    };
+    session.busy = true;
+    for (int i = 0; i < 10; ++i) EXPECT_TRUE(say(edit("lights", 900'000))) << "the newest lights alone wait";
+    int said = 0;
+    while (said < 20 && say(edit("pass", 900'000))) ++said;
+    EXPECT_EQ(said, 5);
+    session.busy = false;
+    session.edit(json::object());
+    EXPECT_TRUE(say(edit("pass", 900'000)));
 }
 
 TEST_F(ClientTest, TellsOnlyWhatHasChanged) {

@@ -1,6 +1,7 @@
 // A session without a renderer, for tests: edits apply at once, and its pictures are given to it.
 #pragma once
 
+#include <atomic>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -54,6 +55,8 @@ class FakeSession final : public studio::Session {
             next.compared = std::move(compared);
         });
     }
+    /// Messages are not said to be handled until the first one after it.
+    std::atomic<bool> busy = false;
     std::vector<studio::Request> asked() const {
         const std::lock_guard lock(mutex_);
         return asked_;
@@ -64,14 +67,16 @@ class FakeSession final : public studio::Session {
     uint64_t change(Function function) {
         uint64_t number = 0;
         publish([&](studio::Shown& next) {
-            number = ++next.messages;
+            number = ++messages_;
             function(next);
+            if (!busy) next.messages = messages_;
         });
         return number;
     }
 
     studio::Mailbox mailbox_;
     mutable std::mutex mutex_;
+    uint64_t messages_ = 0;
     std::vector<studio::Request> asked_;
 };
 

@@ -400,7 +400,7 @@ bool Streamer::encodeStills(int number, const studio::Shown& shown,
 }
 
 bool Streamer::answerStillRequests(const studio::Shown& shown) {
-    if (!isFull(shown)) return false;
+    if (!isFull(shown) || shown.facts.compiling || shown.facts.standsIn) return false;
     {
         const std::lock_guard lock(mutex_);
         if (stillRequests_.empty()) return false;

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
 namespace limpid::serve {
 namespace {
 
@@ -25,6 +30,24 @@ TEST(Access, KnowsNoNamesOfOtherAddresses) {
     EXPECT_FALSE(isLoopback("0.0.0.0"));
     EXPECT_FALSE(isLoopback("::"));
     EXPECT_TRUE(isLoopback("127.1.2.3"));
+}
+
+/// A proxy passes the page on, with its own name or with ours.
+TEST(Access, AllowsOriginsOfProxies) {
+    const std::vector<std::string> origins{parseOrigin("https://Limpid.example/"),
+                                           parseOrigin("http://proxy:8443")};
+    EXPECT_TRUE(isAllowedOrigin("https://limpid.example", "127.0.0.1:8080", false, origins));
+    EXPECT_TRUE(isAllowedOrigin("http://proxy:8443", "proxy:8443", false, origins));
+    for (const char* origin : {"http://limpid.example", "https://limpid.example:8443",
+                               "https://limpid.example.evil.example", "https://evil.example", "null"})
+        EXPECT_FALSE(isAllowedOrigin(origin, "127.0.0.1:8080", false, origins)) << origin;
+    EXPECT_TRUE(isAllowedHost("limpid.example", "127.0.0.1", origins));
+    EXPECT_TRUE(isAllowedHost("proxy:8443", "127.0.0.1", origins));
+    for (const char* host : {"evil.example", "limpid.example:80", "proxy", "https"})
+        EXPECT_FALSE(isAllowedHost(host, "127.0.0.1", origins)) << host;
+    for (const char* text : {"", "limpid.example", "https://", "ftp://limpid.example", "https:///",
+                             "https://limpid.example/page", "https://limpid.example?a", "https://me@limpid"})
+        EXPECT_THROW(parseOrigin(text), UsageError) << text;
 }
 
 TEST(Access, AllowsOnlyTheOwnOrigin) {

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t maxKept = 4;
+constexpr size_t usuallyKept = 4;
 constexpr size_t longestName = 100;
 
 }  // namespace
@@ -72,13 +72,20 @@ fs::path Uploads::keep(Upload& upload) {
     upload.stream_.close();
     if (!upload.stream_.good()) throw StorageError("an upload cannot be written: the disk may be full");
     upload.kept_ = true;
-    kept_.push_back(upload.folder_);
-    if (kept_.size() > maxKept) {
-        std::error_code ignored;
-        fs::remove_all(kept_.front(), ignored);
-        kept_.pop_front();
-    }
+    kept_.push_back(upload.file());
     return upload.file();
+}
+
+void Uploads::tidy(const std::vector<std::string>& used) {
+    for (size_t i = 0; i < kept_.size() && kept_.size() >= usuallyKept;) {
+        if (std::ranges::find(used, kept_[i].string()) != used.end()) {
+            ++i;
+            continue;
+        }
+        std::error_code ignored;
+        fs::remove_all(kept_[i].parent_path(), ignored);
+        kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
 }
 
 }  // namespace limpid::serve

@@ -3,12 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 
@@ -53,13 +53,18 @@ class Uploads {
     /// Null if files of this name are not accepted. Each is alone in its folder, and keeps its name: a scene
     /// is called after it. Throws StorageError if it cannot be stored.
     std::unique_ptr<Upload> begin(const std::string& name, uint64_t bytes);
-    /// Keeps the file; the oldest of the kept ones goes. Throws StorageError if it cannot be written.
+    /// Keeps the file. Throws StorageError if it cannot be written.
     std::filesystem::path keep(Upload& upload);
+    /// Makes room for another file: the oldest go but for those that are `used`.
+    void tidy(const std::vector<std::string>& used);
+    /// Nothing more can be kept before tidy().
+    bool isFull() const { return kept_.size() >= mostKept; }
 
   private:
+    static constexpr size_t mostKept = 8;
     uint64_t maxBytes_, ever_ = 0;
     std::filesystem::path root_;
-    std::deque<std::filesystem::path> kept_;
+    std::vector<std::filesystem::path> kept_;  ///< files, the oldest first
 };
 
 /// Whether a file may be called so: a name without a path, of letters, digits, '.', '_' and '-', not hidden,

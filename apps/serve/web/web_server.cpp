@@ -33,6 +33,7 @@ constexpr size_t maxClients = 32;          ///< WebSockets
 constexpr size_t maxUploads = 2;           ///< at the same time
 constexpr int maxHeaderBytes = 1024;
 constexpr size_t chunkBytes = 65536;
+constexpr int chunkSeconds = 30;  ///< for a client to take one
 constexpr lws_usec_t tick = LWS_USEC_PER_SEC / 20;
 
 /// No script, style or connection but this server's own; no other page may frame it.
@@ -126,6 +127,7 @@ struct WebServer::Impl {
     std::map<lws*, Clock::time_point> waiting;  ///< for /picture.png, until then
     Uploads uploads;
     std::map<lws*, std::unique_ptr<Upload>> uploading;
+    uint64_t lastOpened = 0;  ///< number of the message that opens the last upload
     std::mutex stillMutex;
     Bytes still;  ///< for all that wait
     bool stillAsked = false;
@@ -159,8 +161,8 @@ struct WebServer::Impl {
         const std::string host = headerOf(wsi, WSI_TOKEN_HOST);
         // One that is too long to be read must not count as missing, as that of a program.
         if (withOrigin && lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) > maxHeaderBytes) return false;
-        return isAllowedHost(host, settings.bind) &&
-               (!withOrigin || isAllowedOrigin(headerOf(wsi, WSI_TOKEN_ORIGIN), host, tls));
+        return isAllowedHost(host, settings.bind, settings.origins) &&
+               (!withOrigin || isAllowedOrigin(headerOf(wsi, WSI_TOKEN_ORIGIN), host, tls, settings.origins));
     }
     bool hasToken(lws* wsi) const { return sameToken(argumentOf(wsi, "token="), token); }
 
@@ -172,6 +174,7 @@ struct WebServer::Impl {
     int confirmUpgrade(lws* wsi);
     int askForStill(lws* wsi);
     int beginUpload(lws* wsi);
+    void tidyUploads();
     int receiveUpload(lws* wsi, std::span<const std::byte> bytes);
     int endUpload(lws* wsi);
     int sendToClient(lws* wsi, Client& client);
@@ -217,6 +220,8 @@ int WebServer::Impl::sendAnswer(lws* wsi) {
     Answer& answer = found->second;
     const size_t size = std::min(chunkBytes, answer.body->size() - answer.sent);
     const bool last = answer.sent + size == answer.body->size();
+    // The library's limit is for the whole answer, which takes minutes where a connection is slow.
+    lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, chunkSeconds);
     std::vector<unsigned char> chunk(LWS_PRE + size);
     if (size > 0) std::memcpy(chunk.data() + LWS_PRE, answer.body->data() + answer.sent, size);
     if (lws_write(wsi, chunk.data() + LWS_PRE, size, last ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) <
@@ -279,11 +284,18 @@ int WebServer::Impl::beginUpload(lws* wsi) {
     const auto [end, fault] = std::from_chars(length.data(), length.data() + length.size(), bytes);
     if (fault != std::errc() || end != length.data() + length.size()) return refuse(wsi, 411);
     if (bytes > uploads.maxBytes()) return refuse(wsi, 413);
-    if (uploading.size() >= maxUploads) return refuse(wsi, 503);
+    tidyUploads();
+    if (uploading.size() >= maxUploads || uploads.isFull()) return refuse(wsi, 503);
     std::unique_ptr<Upload> upload = uploads.begin(argumentOf(wsi, "name="), bytes);
     if (!upload) return refuse(wsi, 400);
     uploading[wsi] = std::move(upload);
     return 0;
+}
+
+/// Not while the renderer has yet to open one: it does not tell that it uses it.
+void WebServer::Impl::tidyUploads() {
+    const auto shown = session.shown();
+    if (shown->messages >= lastOpened) uploads.tidy(shown->facts.files);
 }
 
 int WebServer::Impl::receiveUpload(lws* wsi, std::span<const std::byte> bytes) {
@@ -296,7 +308,8 @@ int WebServer::Impl::endUpload(lws* wsi) {
     if (found == uploading.end() || !found->second->isComplete()) return -1;
     const std::unique_ptr<Upload> upload = std::move(found->second);
     uploading.erase(found);
-    session.ask({.kind = studio::Request::Kind::OpenDropped, .file = uploads.keep(*upload).string()});
+    lastOpened =
+        session.ask({.kind = studio::Request::Kind::OpenDropped, .file = uploads.keep(*upload).string()});
     return answer(wsi, "text/plain", std::make_shared<const std::vector<std::byte>>());
 }
 

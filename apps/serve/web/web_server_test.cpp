@@ -154,6 +154,7 @@ class WebServerTest : public testing::Test {
             settings.headerSeconds = headerSeconds;
             settings.stillSeconds = stillSeconds;
             settings.uploads = largestUpload;
+            settings.origins = {"https://limpid.example"};
             session.show(gradient(64, 48, 0), false);
             server = std::make_unique<WebServer>(session, settings, *files, token);
             thread = std::thread([this] { server->run([this] { return ends.load(); }); });
@@ -242,6 +243,9 @@ TEST_F(WebServerTest, RefusesSessionsOfOtherSites) {
          {std::string("http://evil.example"), std::string("null"), "https://" + host(),
           "http://" + host() + ".evil.example", std::string("http://127.0.0.1")})
         EXPECT_FALSE(opens(token(), origin)) << origin;
+    EXPECT_TRUE(opens(token(), "https://limpid.example")) << "a proxy";
+    EXPECT_THAT(get("/?token=" + token(), "limpid.example"), StartsWith("HTTP/1.1 200"));
+    EXPECT_FALSE(opens(token(), "http://limpid.example"));
     EXPECT_FALSE(opens("", ""));
     EXPECT_FALSE(opens(std::string(32, '0'), ""));
 }
@@ -297,6 +301,32 @@ TEST_F(WebServerTest, OpensUploadsAsUntrustedFiles) {
     for (int i = 0; i < 4; ++i) EXPECT_THAT(post(good, body), StartsWith("HTTP/1.1 200"));
     EXPECT_FALSE(fs::exists(asked.back().file)) << "the oldest of five is removed";
     EXPECT_EQ(Viewer(port(), token()).text("hello").at("uploads"), largestUpload);
+}
+
+TEST_F(WebServerTest, KeepsTheUploadsThatAreShown) {
+    const std::string good = "token=" + token() + "&name=room.glb", body(900, 'x');
+    std::vector<std::string> files;
+    const auto send = [&] {
+        EXPECT_THAT(post(good, body), StartsWith("HTTP/1.1 200"));
+        files.push_back(session().asked().back().file);
+    };
+    send();
+    session().publish([&](studio::Shown& next) { next.facts.files = {"builtin:cornell", files.front()}; });
+    for (int i = 0; i < 5; ++i) send();
+    EXPECT_TRUE(fs::exists(files[0])) << "it is shown";
+    EXPECT_FALSE(fs::exists(files[1]));
+    EXPECT_TRUE(fs::exists(files.back()));
+    // A renderer that is busy has yet to say what it uses.
+    session().busy = true;
+    for (int i = 0; i < 4; ++i) send();
+    session().publish([](studio::Shown& next) { next.facts.files.clear(); });
+    send();
+    for (size_t i = files.size() - 4; i < files.size(); ++i) EXPECT_TRUE(fs::exists(files[i])) << i;
+    EXPECT_THAT(post(good, body), StartsWith("HTTP/1.1 503")) << "its disk is not filled meanwhile";
+    session().busy = false;
+    session().edit(json::object());
+    send();
+    EXPECT_FALSE(fs::exists(files[0]));
 }
 
 TEST_F(WebServerTest, SurvivesAnUploadThatCannotBeStored) {
@@ -355,7 +385,7 @@ TEST_F(WebServerTest, RefusesWhatIsNoMessage) {
 
 TEST_F(WebServerTest, DisconnectsWhoFloodsIt) {
     Viewer viewer(port(), token());
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 10000; ++i) {
         if (!viewer.session().sendText(R"({"type":"steer","orbit":[0,0]})")) break;
     }
     const auto isClosed = [&] {
@@ -425,6 +455,13 @@ TEST_F(WebServerTest, SaysThatThereIsNoPictureInFullSize) {
     EXPECT_THAT(answer, HasSubstr("no picture in full size"));
     session().show(gradient(128, 96, 0), false);
     EXPECT_THAT(get("/picture.png?token=" + token()), StartsWith("HTTP/1.1 200"));
+    // Nor is one of a method that stands in for the chosen one.
+    for (bool studio::Facts::*const standsIn : {&studio::Facts::standsIn, &studio::Facts::compiling}) {
+        session().publish([&](studio::Shown& next) { next.facts.*standsIn = true; });
+        EXPECT_THAT(get("/picture.png?token=" + token()), StartsWith("HTTP/1.1 504"));
+        session().publish([&](studio::Shown& next) { next.facts.*standsIn = false; });
+        EXPECT_THAT(get("/picture.png?token=" + token()), StartsWith("HTTP/1.1 200"));
+    }
 }
 
 TEST_F(WebServerTest, InspectedImagesAndMotionReachTheClient) {

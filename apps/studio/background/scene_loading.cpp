@@ -10,8 +10,9 @@ namespace {
 
 constexpr double loaded = 0.6;  ///< share of the time until a scene's file is read; trees take the rest
 
+/// No thread works on it.
 bool isReady(const std::future<LoadedScene>& scene) {
-    return scene.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    return !scene.valid() || scene.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
 }  // namespace
@@ -26,24 +27,32 @@ LoadedScene loadScene(const SceneLoader& load, const SceneLoading::Order& order,
 void SceneLoading::begin(Order order) {
     cancel();
     progress_ = Progress::watched();
-    scene_ = std::async(std::launch::async,
-                        [this, order, progress = progress_] { return loadScene(load_, order, progress); });
     order_ = std::move(order);
+    if (isReady(givenUp_)) start();
+}
+
+/// Waits for what was given up.
+void SceneLoading::start() {
+    givenUp_ = {};
+    scene_ = std::async(std::launch::async, [this, order = *order_, progress = progress_] {
+        return loadScene(load_, order, progress);
+    });
 }
 
 void SceneLoading::cancel() {
-    std::erase_if(cancelled_, isReady);
     if (!order_) return;
-    progress_.cancel();
-    cancelled_.push_back(std::move(scene_));
     order_.reset();
+    progress_.cancel();
+    if (scene_.valid()) givenUp_ = std::move(scene_);
 }
 
-bool SceneLoading::isDone() const {
-    return order_ && isReady(scene_);
+bool SceneLoading::isDone() {
+    if (order_ && !scene_.valid() && isReady(givenUp_)) start();
+    return scene_.valid() && isReady(scene_);
 }
 
 LoadedScene SceneLoading::take() {
+    if (!scene_.valid()) start();
     order_.reset();
     return scene_.get();
 }

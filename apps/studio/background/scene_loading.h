@@ -1,4 +1,5 @@
-// A scene that is being read and built on a thread of its own, while another one is shown.
+// A scene that is being read and built on a thread of its own, while another one is shown. At most one is
+// read at a time: what is asked for meanwhile waits, and only the last of it.
 #pragma once
 
 #include <functional>
@@ -30,6 +31,8 @@ class SceneLoading {
         std::optional<std::string>
             clip;             ///< argument for chooseClip(), if the scene has clips; none: no clip
         std::string message;  ///< for the user, when it is done
+        /// Lamps of the shown scene that `source` has no more: numbers among those that were added.
+        std::vector<int> gone;
     };
 
     /// `load` outlives this.
@@ -39,25 +42,28 @@ class SceneLoading {
     SceneLoading(const SceneLoading&) = delete;
     SceneLoading& operator=(const SceneLoading&) = delete;
 
-    /// Begins; what was being loaded is given up.
+    /// Begins, once what was being loaded has been given up.
     void begin(Order order);
-    /// Nothing waits for what is given up: its thread ends at its next step.
+    /// Nothing waits for what is given up but the next order: its thread ends at its next step.
     void cancel();
     explicit operator bool() const { return order_.has_value(); }
     const Order& order() const { return *order_; }
     bool isFirst() const { return order_ && order_->why == Why::First; }
-    bool isDone() const;
+    /// To be asked again and again: begins what had to wait.
+    bool isDone();
     int percent() const { return static_cast<int>(100.0 * progress_.done()); }
     /// Waits for the scene and returns it. Throws what the loader threw, and Error. Nothing is being loaded
     /// afterwards.
     LoadedScene take();
 
   private:
+    void start();
+
     const SceneLoader& load_;
     std::optional<Order> order_;
     Progress progress_;
-    std::future<LoadedScene> scene_;
-    std::vector<std::future<LoadedScene>> cancelled_;  ///< their threads still run
+    std::future<LoadedScene> scene_;    ///< of the order; none while that waits
+    std::future<LoadedScene> givenUp_;  ///< its thread may still run; none while there is a scene_
 };
 
 /// Loads a scene, starts its clip and builds its trees and tables. Throws what the loader throws, Error and

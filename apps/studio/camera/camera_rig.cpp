@@ -56,11 +56,13 @@ void CameraRig::keep(const Stage& stage) {
 void CameraRig::choose(const Stage& stage, int number) {
     chosen_ = number;
     path_.reset();
-    if (number == 0)
-        fly_ = handAt(stage, home_);
-    else if (static_cast<size_t>(number) > stage.scene().cameras.size())
+    if (static_cast<size_t>(number) > stage.scene().cameras.size())
         path_ = scene::builtinCameraPath(names_[static_cast<size_t>(number)], stage.scene(), home_,
                                          std::max(stage.duration(), pathSeconds));
+}
+
+void CameraRig::goHome(const Stage& stage) {
+    stand(stage, home_);
 }
 
 void CameraRig::stand(const Stage& stage, const scene::Camera& camera) {

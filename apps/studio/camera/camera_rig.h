@@ -25,6 +25,7 @@ class CameraRig {
     const std::vector<std::string>& names() const { return names_; }
     bool isFree() const { return chosen_ == 0; }
     int chosen() const { return chosen_; }
+    /// The free camera is where the hand has left it.
     void choose(const Stage& stage, int number);
     /// From where it is. Nothing if it is free.
     void setFree(const Stage& stage, double time);
@@ -33,7 +34,7 @@ class CameraRig {
     /// Free, and where FlyCamera::place() puts it.
     bool place(const Stage& stage, double time, const vec3& eye, const vec3& target, const vec3& up);
     /// Back to where it started.
-    void goHome(const Stage& stage) { choose(stage, 0); }
+    void goHome(const Stage& stage);
 
     scene::Camera at(const Stage& stage, double time) const;
     /// Of the free one.

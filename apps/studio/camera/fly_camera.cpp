@@ -99,6 +99,11 @@ void FlyCamera::move(const vec3& rightUpForward) {
     eye_ += rightUpForward.x * right() + rightUpForward.y * up() + rightUpForward.z * forward();
 }
 
+void FlyCamera::setHalfHeight(float halfHeight) {
+    start_.orthographic = halfHeight > 0.0f;
+    if (start_.orthographic) start_.halfHeight = halfHeight;
+}
+
 scene::Camera FlyCamera::camera() const {
     scene::Camera camera = scene::lookAt(eye_, eye_ + forward(), up(), start_.verticalFov);
     camera.orthographic = start_.orthographic;

@@ -34,6 +34,8 @@ class FlyCamera {
     const vec3& up() const { return axes_[1]; }
     float distance() const { return distance_; }
     void setVerticalFov(float radians) { start_.verticalFov = radians; }
+    /// Of what it sees without perspective, world units; 0: with perspective.
+    void setHalfHeight(float halfHeight);
 
   private:
     vec3 right() const;

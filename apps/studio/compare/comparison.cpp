@@ -34,6 +34,7 @@ void ComparisonChoice::keep(const RenderSettings& settings) {
 
 RenderSettings comparisonSettings(const ComparisonChoice& choice, const RenderSettings& settings) {
     RenderSettings other = settings;
+    if (!choice.isOn()) return other;
     if (choice.isKept()) {
         other = choice.kept;
         other.extent = settings.extent;

@@ -30,10 +30,10 @@ struct ComparisonChoice {
     void keep(const RenderSettings& settings);
 };
 
-/// Of what is compared with a picture made by `settings`. A denoiser gets the picture's integrator, or paths
-/// where that takes none, and a reference is the mean of the same. It has other random numbers, and goes
-/// through the pixels' centres where the picture does. Kept settings have the picture's random numbers: both
-/// see the same noise.
+/// Of what is compared with a picture made by `settings`: the same where nothing is. A denoiser gets the
+/// picture's integrator, or paths where that takes none, and a reference is the mean of the same. It has
+/// other random numbers, and goes through the pixels' centres where the picture does. Kept settings have the
+/// picture's random numbers: both see the same noise.
 RenderSettings comparisonSettings(const ComparisonChoice& choice, const RenderSettings& settings);
 
 /// PSNR and FLIP of one picture against another, computed beside the rendering.

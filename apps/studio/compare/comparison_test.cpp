@@ -29,6 +29,13 @@ TEST(Comparison, AReferenceIsTheIntegratorAloneWithOtherNumbers) {
     EXPECT_EQ(comparisonSettings(choice, settings).pipeline, Pipeline{});
 }
 
+TEST(Comparison, NothingNeedsNoOtherSettings) {
+    RenderSettings settings;
+    settings.pipeline = parsePipeline("path", "svgf");
+    settings.seed = 7;
+    EXPECT_EQ(comparisonSettings({}, settings), settings);
+}
+
 TEST(Comparison, EveryIntegratorAndDenoiserCanBeChosen) {
     const std::vector<std::string> names = comparisonNames();
     ASSERT_EQ(names.size(), 3 + integrators().size() + denoise::denoisers().size());

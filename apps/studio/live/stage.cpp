@@ -26,14 +26,15 @@ void Stage::setLights(const std::vector<scene::LightControl>& lights) {
 
 std::optional<scene::SceneFrame> Stage::nextFrame(const std::optional<Step>& step, double time) {
     const bool moves = animator_ && step;
-    if (!moves && !lightsChanged_) return std::nullopt;
+    lightsSent_ = std::exchange(lightsChanged_, false);
+    if (!moves && !lightsSent_) return std::nullopt;
     scene::SceneFrame frame;
     if (animator_)
         frame = animator_->frame(step ? step->to : time, step ? step->from : time);
     else
         frame.params = onDevice_->params();
     live_->setParams(frame.params);
-    if (std::exchange(lightsChanged_, false)) live_->addTo(frame);
+    if (lightsSent_) live_->addTo(frame);
     return frame;
 }
 

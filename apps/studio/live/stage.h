@@ -25,6 +25,8 @@ class Stage {
     void setLights(const std::vector<scene::LightControl>& lights);
     /// setLights() was called since the last frame.
     bool lightsChanged() const { return lightsChanged_; }
+    /// The last frame was not rendered: the next one changes the lights that it would have.
+    void repeatLights() { lightsChanged_ = lightsChanged_ || lightsSent_; }
 
     const scene::Scene& scene() const { return scene_; }
     scene::GpuScene& onDevice() { return *onDevice_; }
@@ -44,7 +46,7 @@ class Stage {
     scene::Scene scene_;
     std::vector<scene::LightControl> originalLights_, lights_;
     std::optional<scene::LiveLights> live_;
-    bool lightsChanged_ = false;
+    bool lightsChanged_ = false, lightsSent_ = false;
     scene::BoundingSphere sphere_;
     std::optional<scene::GpuScene> onDevice_;
     std::optional<scene::SceneAnimator> animator_;

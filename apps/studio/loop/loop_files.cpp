@@ -29,6 +29,7 @@ void RenderLoop::saveWhatIsAsked() {
 }
 
 void RenderLoop::save(const std::filesystem::path& file) {
+    if (!main_) throw Error("there is no frame yet");
     savePicture(file, main_, stopsOf(main_.settings().pipeline), curveOf(main_.settings().pipeline));
     say("wrote " + file.string());
     log::info("{}", facts_.message);
@@ -58,12 +59,18 @@ void RenderLoop::makeCommand() {
     giveCommand(command.text, command.text);
 }
 
-/// For frames that no command line makes again: the same view, to go on from.
+/// For frames that no command line makes again: the same view, to go on from. If no file may be written here,
+/// the command writes it where it is run: beside the scene, on a machine that may have no screen.
 void RenderLoop::makeStateCommand(const ShownFrame& frame, const CommandLine& command) {
-    if (settings_.writesFiles) writeStateFile(stateFile, state_);
-    const std::string text = stateCommandOf(frame, stateFile);
-    giveCommand(text,
-                command.problem.empty() ? text : text + "\n(no 'limpid render': " + command.problem + ")");
+    const std::string reason = command.problem.empty() ? "" : "(no 'limpid render': " + command.problem + ")";
+    if (settings_.writesFiles) {
+        writeStateFile(stateFile, state_);
+        const std::string text = stateCommandOf(frame, "view", stateFile);
+        return giveCommand(text, reason.empty() ? text : text + "\n" + reason);
+    }
+    const std::string text =
+        writingCommandOf(stateText(state_), stateFile) + " && " + stateCommandOf(frame, "serve", stateFile);
+    giveCommand(text, reason.empty() ? text : reason);
 }
 
 void RenderLoop::giveCommand(const std::string& text, const std::string& message) {

@@ -67,7 +67,14 @@ bool RenderLoop::previewsFirst() {
     if (compiling_.valid()) {
         if (compiling_.wait_for(std::chrono::seconds(0)) != std::future_status::ready && !ending_)
             return true;
-        compiling_.get();
+        try {
+            compiling_.get();
+        } catch (const gpu::DeviceLost&) {
+            throw;
+        } catch (const Error& fault) {  // the frame that needs them will fail, and tell the user
+            log::warn("{}", fault.what());
+            return false;
+        }
     }
     // A given number of frames is for scripts, which want the same pictures each time.
     const bool hasPixels = state_.viewport.width > 0 && state_.viewport.height > 0;
@@ -88,6 +95,24 @@ bool RenderLoop::previewsFirst() {
 /// Renders the next frame, or another one of the comparison alone. Returns false if neither is needed.
 bool RenderLoop::renderWhatIsDue() {
     applySettings();
+    if (hasFailed_ && !ending_) return false;
+    try {
+        return renderNext();
+    } catch (const gpu::Interrupted&) {
+        playback_.reset(playback_.time());
+        main_.drop();
+        comparison_.drop();
+        return true;
+    } catch (const gpu::DeviceLost&) {
+        throw;
+    } catch (const Error& fault) {
+        // Scripts want the error, and so does who waits for a picture on leaving.
+        if (settings_.quitAfter > 0 || ending_) throw;
+        return goBack(fault.what());
+    }
+}
+
+bool RenderLoop::renderNext() {
     const bool wasNew = std::exchange(isNew_, isNew_ && previewsFirst());
     if (wasNew && !isNew_) flight_.reset(playback_.time());
     if (isNew_) {
@@ -102,24 +127,50 @@ bool RenderLoop::renderWhatIsDue() {
     const CameraParams camera = cameraNow();
     const bool other =
         !main && main_ && state_.running && comparison_.mustRender(state_, wanted_, camera, false);
-    try {
-        const bool news = !facts_.computing || !main_ || wanted_.extent != main_.settings().extent;
-        if (main && news) announce();
-        if (main) renderTimed(camera);
-        if (other) comparison_.render(*stage_, state_, wanted_, playback_.moment(camera), true);
-    } catch (const gpu::Interrupted&) {
-        playback_.reset(playback_.time());
-        main_.drop();
-        comparison_.drop();
-        return true;
-    }
+    const bool news = !facts_.computing || !main_ || wanted_.extent != main_.settings().extent;
+    if (main && news) announce();
+    if (main) renderTimed(camera);
+    if (other) comparison_.render(*stage_, state_, wanted_, playback_.moment(camera), true);
     measureExposure();
     if (main_) main_.setLook(lookOf(main_.settings().pipeline));
     if (main_ && main_.expose(stopsOf(main_.settings().pipeline))) changedFacts_ = true;
     noteFrameTime(main);
     comparison_.update(main_, state_.exposure, main || other);
     saveWhatIsAsked();
+    // What stands in for the picture that is wanted says nothing of whether that can be rendered.
+    if ((main || other) && !isNew_ && !networks_.isLoading() && !resolution_.isCoarse()) rendered_ = state_;
     return main || other;
+}
+
+/// After a frame that could not be rendered, say because the device's memory does not suffice: goes back to
+/// the method of the last frame that could, or stops until something changes. Returns true if another frame
+/// is to be rendered.
+bool RenderLoop::goBack(const std::string& fault) {
+    const std::optional<State> before = std::exchange(rendered_, std::nullopt);
+    begun_.reset();
+    probeAt_.reset();
+    isNew_ = false;
+    startAnew();
+    stage_->repeatLights();
+    changedFacts_ = true;
+    facts_.fault = fault + (before ? "; the settings before are used again" : "; rendering is stopped");
+    log::warn("{}", facts_.fault);
+    if (!before) {
+        state_.running = false;
+        hasFailed_ = true;
+        return false;
+    }
+    // Not the viewport: who shows the picture would ask for it again. Nor the camera, nor the lights.
+    state_.render = before->render;
+    state_.pipelineBefore = before->pipelineBefore;
+    state_.parts = before->parts;
+    state_.samples = before->samples;
+    state_.jitter = before->jitter;
+    state_.resolution = before->resolution;
+    state_.comparison = before->comparison;
+    state_.arrows = before->arrows;
+    state_.pass = before->pass;
+    return true;
 }
 
 void RenderLoop::renderTimed(const CameraParams& camera) {

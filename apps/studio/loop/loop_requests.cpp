@@ -37,13 +37,20 @@ void RenderLoop::edit(const nlohmann::json& changes) {
     };
     const State before = state_;
     if (!attempt([&] { apply(state_, changes); }) || !stage_) return;
-    if (state_.camera != before.camera) {
+    const bool chosen = state_.camera != before.camera;
+    if (chosen) {
         state_.camera = std::clamp(state_.camera, 0, static_cast<int>(facts_.cameras.size()) - 1);
         rig_.choose(*stage_, state_.camera);
-        state_.playing |= rig_.movesOnPath();
+        if (!names({"playing"})) state_.playing |= rig_.movesOnPath();
         startAnew();
-    } else if (names({"eye", "target", "up"})) {
-        placeCamera();
+    }
+    // What is said together with another camera than the free one is that camera's.
+    if (!chosen || rig_.isFree()) {
+        if (names({"eye", "target", "up"})) placeCamera();
+        if (names({"half_height"})) {
+            freeCamera();
+            rig_.hand().setHalfHeight(state_.halfHeight);
+        }
     }
     if (names({"time"})) {
         playback_.seek(double{state_.time});
@@ -55,14 +62,18 @@ void RenderLoop::edit(const nlohmann::json& changes) {
 
 void RenderLoop::steer(const Gesture& gesture) {
     if (!stage_ || !gesture.moves()) return;
-    if (!rig_.isFree()) {
-        rig_.setFree(*stage_, playback_.time());
-        state_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
-        startAnew();
-    }
-    state_.camera = rig_.chosen();
+    freeCamera();
     gesture.apply(rig_.hand(), speed_);
     showPose();
+}
+
+/// The camera stays where it is, and can be moved.
+void RenderLoop::freeCamera() {
+    if (rig_.isFree()) return;
+    rig_.setFree(*stage_, playback_.time());
+    state_.camera = rig_.chosen();
+    state_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
+    startAnew();
 }
 
 void RenderLoop::carryOut(const Request& request) {
@@ -99,7 +110,7 @@ void RenderLoop::carryOut(const Request& request) {
 void RenderLoop::resetCamera() {
     state_.camera = 0;
     state_.fovDegrees = glm::degrees(rig_.home().verticalFov);
-    rig_.choose(*stage_, 0);
+    rig_.goHome(*stage_);
     startAnew();
 }
 
@@ -118,22 +129,18 @@ void RenderLoop::focus(const std::array<float, 2>& position) {
         picker_.pointSeen(stage_->onDevice(), cameraNow(), extent, pixelAt(position[0], extent.width),
                           pixelAt(position[1], extent.height));
     if (!point) return;
-    if (!rig_.isFree()) {
-        rig_.setFree(*stage_, playback_.time());
-        state_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
-        state_.camera = rig_.chosen();
-        startAnew();
-    }
+    freeCamera();
     rig_.hand().focus(*point);
 }
 
 /// Updates the pose in the state.
 void RenderLoop::showPose() {
+    const scene::Camera camera = rig_.at(*stage_, playback_.time());
+    state_.halfHeight = camera.orthographic ? camera.halfHeight : 0.0f;
     if (rig_.isFree()) {
         state_.pose = {rig_.hand().eye(), rig_.hand().target(), rig_.hand().up()};
         return;
     }
-    const scene::Camera camera = rig_.at(*stage_, playback_.time());
     const vec3 eye(camera.toWorld[3]);
     state_.pose = {eye, eye - rig_.hand().distance() * vec3(camera.toWorld[2]), vec3(camera.toWorld[1])};
 }
@@ -152,7 +159,8 @@ void RenderLoop::placeCamera() {
 /// rendering is stopped.
 bool RenderLoop::answerProbe() {
     if (!probeAt_ || !main_ || isNew_ || (state_.running && main_.lacksReasons())) return false;
-    facts_.allValues = probeAll(*std::exchange(probeAt_, std::nullopt));
+    const std::array<float, 2> position = *std::exchange(probeAt_, std::nullopt);
+    attempt([&] { facts_.allValues = probeAll(position); });
     return true;
 }
 
@@ -245,6 +253,7 @@ void RenderLoop::cancelLoading() {
     if (!loading_ && !networks_.isLoading()) return;
     if (loading_) {
         loading_.cancel();
+        state_.lights.showBackground(settings_.source);
     } else {
         networks_.settle();
         doWithoutNetworks();

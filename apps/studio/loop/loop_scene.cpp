@@ -1,6 +1,6 @@
 // The scene and its lights: opening, changing and restarting.
 #include <algorithm>
-#include <optional>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -10,13 +10,19 @@
 #include "studio/state/light_desk.h"
 
 namespace limpid::studio {
-/// Begins to load a scene, while the old one is shown. A scene that is being loaded already is given up.
-void RenderLoop::load(const scene::SceneSource& source, SceneLoading::Why why, std::string message) {
-    const bool relights = why == SceneLoading::Why::Relit;
-    std::optional<std::string> clip = "";
-    if (why == SceneLoading::Why::First) clip = settings_.animation;
-    if (relights) clip = stage_->moves() ? std::optional(scene::clipChoice(stage_->scene())) : std::nullopt;
-    loading_.begin({source, why, std::move(clip), std::move(message)});
+
+/// Begins to load the scene that the studio starts with.
+void RenderLoop::loadFirst() {
+    loading_.begin(
+        {.source = settings_.source, .why = SceneLoading::Why::First, .clip = settings_.animation});
+}
+
+/// What another change is made to, so that none is lost: what is being loaded, or the scene that is shown.
+SceneLoading::Order RenderLoop::orderToChange() const {
+    if (loading_) return loading_.order();
+    SceneLoading::Order order{.source = settings_.source, .why = SceneLoading::Why::Relit};
+    if (stage_ && stage_->moves()) order.clip = scene::clipChoice(stage_->scene());
+    return order;
 }
 
 /// Shows the scene that was being loaded, if that is done; leaves everything unchanged if it failed. Throws
@@ -26,14 +32,15 @@ void RenderLoop::finishLoading() {
     const SceneLoading::Order order = loading_.order();
     changedFacts_ = true;
     if (order.why == SceneLoading::Why::First) return showFirst(loading_.take());
-    attempt([&] {
+    const bool shown = attempt([&] {
         LoadedScene scene = loading_.take();
         if (order.why == SceneLoading::Why::Relit)
-            showRelit(std::move(scene), order.source);
+            showRelit(std::move(scene), order);
         else
-            showOpened(std::move(scene), order.source);
+            showOpened(std::move(scene), order);
         if (!order.message.empty()) say(order.message);
     });
+    if (!shown) state_.lights.showBackground(settings_.source);
 }
 
 /// Shows the scene that the studio starts with.
@@ -51,14 +58,14 @@ void RenderLoop::showFirst(LoadedScene scene) {
 }
 
 /// Shows a scene that was opened. The command line's camera and clip apply to its own scene only.
-void RenderLoop::showOpened(LoadedScene scene, const scene::SceneSource& source) {
+void RenderLoop::showOpened(LoadedScene scene, const SceneLoading::Order& order) {
     const scene::Camera home = scene.scene.cameras.front();
     show(std::move(scene));
     goTo(home);
-    const LightDesk before = state_.lights;
-    const bool same = source.scene == settings_.source.scene,
-               sameSky = source.environment == settings_.source.environment;
-    settings_.source = source;
+    const LightDesk before = deskWithout(order.gone);
+    const bool same = order.source.scene == settings_.source.scene,
+               sameSky = order.source.environment == settings_.source.environment;
+    settings_.source = order.source;
     settings_.source.lightFile.clear();
     settings_.startCamera.clear();
     state_.lights.show(stage_->originalLights(), settings_.source);
@@ -72,6 +79,8 @@ void RenderLoop::show(LoadedScene scene) {
     comparison_.drop();
     stage_ = std::move(stage);
     isNew_ = true;
+    rendered_.reset();
+    hasFailed_ = false;
     ++facts_.scenesShown;
     facts_.scene = stage_->scene().name;
     facts_.sceneRadius = std::max(stage_->sphere().radius, 1e-3f);
@@ -92,39 +101,57 @@ void RenderLoop::goTo(const scene::Camera& home) {
 /// Opens an environment map around the current scene, or a scene.
 void RenderLoop::open(const std::string& file, bool dropped) {
     const std::string extension = std::filesystem::path(file).extension().string();
-    scene::SceneSource source = settings_.source;
+    SceneLoading::Order order = orderToChange();
+    order.why = SceneLoading::Why::Opened;
+    order.clip = "";
+    order.message = "opened " + file;
     if (extension == ".hdr" || extension == ".exr" || extension == ".pic") {
-        source.environment = file;
-        source.background.clear();
+        order.source.environment = file;
+        order.source.background.clear();
     } else {
-        source.scene = file;
+        order.source.scene = file;
         // A dropped file does not imply permission to read the folders around its own.
-        source.assetRoot = dropped ? std::filesystem::absolute(file).parent_path().string() : "";
+        order.source.assetRoot = dropped ? std::filesystem::absolute(file).parent_path().string() : "";
     }
-    load(source, SceneLoading::Why::Opened, "opened " + file);
+    loading_.begin(std::move(order));
 }
 
 void RenderLoop::addLamp(bool sun) {
-    scene::SceneSource source = settings_.source;
-    source.lights.push_back(newLamp(sun, state_.pose.eye, state_.pose.target, state_.exposure));
-    load(source, SceneLoading::Why::Relit, "");
+    SceneLoading::Order order = orderToChange();
+    order.source.lights.push_back(newLamp(sun, state_.pose.eye, state_.pose.target, state_.exposure));
+    loading_.begin(std::move(order));
 }
 
+/// The desk keeps the lamp until the scene without it is shown: loading may fail, or be given up.
 void RenderLoop::takeLampAway(int index) {
-    scene::SceneSource source = settings_.source;
-    removeLamp(index, source, state_.lights);
-    load(source, SceneLoading::Why::Relit, "");
+    const int number = index - state_.lights.firstAdded;
+    if (number < 0 || static_cast<size_t>(number) >= settings_.source.lights.size()) return;
+    SceneLoading::Order order = orderToChange();
+    if (std::ranges::find(order.gone, number) != order.gone.end()) return;
+    const auto before = std::ranges::count_if(order.gone, [&](int each) { return each < number; });
+    order.source.lights.erase(order.source.lights.begin() + (number - before));
+    order.gone.push_back(number);
+    loading_.begin(std::move(order));
 }
 
 /// Loads the scene again with the background that was chosen.
 void RenderLoop::changeBackground() {
+    SceneLoading::Order order = orderToChange();
+    order.source.background = state_.lights.backgroundText();
+    loading_.begin(std::move(order));
+}
+
+/// The lights of the scene that is shown, as if these lamps had never been added to it.
+LightDesk RenderLoop::deskWithout(std::vector<int> lamps) const {
+    LightDesk desk = state_.lights;
     scene::SceneSource source = settings_.source;
-    source.background = state_.lights.backgroundText();
-    load(source, SceneLoading::Why::Relit, "");
+    std::ranges::sort(lamps, std::greater());  // the others keep their numbers
+    for (const int number : lamps) removeLamp(desk.firstAdded + number, source, desk);
+    return desk;
 }
 
 /// Shows the same scene with other lights; everything else is kept.
-void RenderLoop::showRelit(LoadedScene scene, const scene::SceneSource& source) {
+void RenderLoop::showRelit(LoadedScene scene, const SceneLoading::Order& order) {
     const double time = playback_.time();
     show(std::move(scene));
     playback_.reset(time);
@@ -133,11 +160,11 @@ void RenderLoop::showRelit(LoadedScene scene, const scene::SceneSource& source) 
     rig_.keep(*stage_);
     state_.camera = rig_.chosen();
     facts_.cameras = rig_.names();
-    const std::string backgroundBefore = settings_.source.background;
-    settings_.source = source;
-    const LightDesk before = state_.lights;
-    state_.lights.show(stage_->originalLights(), source);
-    state_.lights.carry(before, source.background == backgroundBefore);
+    const LightDesk before = deskWithout(order.gone);
+    const bool sameSky = order.source.background == settings_.source.background;
+    settings_.source = order.source;
+    state_.lights.show(stage_->originalLights(), settings_.source);
+    state_.lights.carry(before, sameSky);
 }
 
 /// Makes the next frame the first one.

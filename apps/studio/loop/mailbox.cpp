@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <iterator>
 #include <string_view>
 
 namespace limpid::studio {
@@ -12,9 +13,9 @@ using nlohmann::json;
 namespace {
 
 /// Fields that a picture can be shown otherwise by, without another frame.
-constexpr std::array<std::string_view, 11> harmless{
-    "exposure", "pass",        "image",   "view.channels",     "view.stops", "view.false_color",
-    "arrows",   "max_samples", "running", "reference_samples", "compare"};
+constexpr std::array<std::string_view, 13> harmless{
+    "exposure", "tone_curve",  "pass",    "image",   "view.channels",     "view.stops",   "view.false_color",
+    "arrows",   "max_samples", "running", "compare", "reference_samples", "kept_settings"};
 
 bool isUrgent(const Message& message) {
     if (std::holds_alternative<Gesture>(message.content)) return true;
@@ -29,7 +30,25 @@ bool isUrgent(const Message& message) {
     });
 }
 
+bool setsLights(const Message& message) {
+    const json* const changes = std::get_if<json>(&message.content);
+    return changes && isOfLightsAlone(*changes);
+}
+
 }  // namespace
+
+bool isOfLightsAlone(const json& changes) {
+    return changes.is_object() && changes.size() == 1 && changes.contains("lights");
+}
+
+void dropReplaced(std::deque<Message>& messages, const Message& newer) {
+    if (!setsLights(newer)) return;
+    for (auto message = messages.rbegin(); message != messages.rend(); ++message) {
+        if (!setsLights(*message)) continue;
+        messages.erase(std::next(message).base());
+        return;
+    }
+}
 
 uint64_t Mailbox::post(std::variant<json, Gesture, Request> content) {
     uint64_t number = 0;
@@ -43,7 +62,9 @@ uint64_t Mailbox::post(std::variant<json, Gesture, Request> content) {
             *before += *gesture;
             last->number = number;
         } else {
-            messages_.push_back({number, std::move(content)});
+            Message message{number, std::move(content)};
+            dropReplaced(messages_, message);
+            messages_.push_back(std::move(message));
         }
     }
     arrived_.notify_one();

@@ -19,12 +19,19 @@ struct Message {
     std::variant<nlohmann::json, Gesture, Request> content;
 };
 
+/// Whether an edit sets all lights and nothing else.
+bool isOfLightsAlone(const nlohmann::json& changes);
+/// Lights that are dragged are hundreds of kilobytes in some scenes, many times a second: removes the last
+/// such edit from messages that wait, if `newer` is another one.
+void dropReplaced(std::deque<Message>& messages, const Message& newer);
+
 /// All functions may be called on any thread.
 class Mailbox {
   public:
     Mailbox() : shown_(std::make_shared<Shown>()) {}
 
-    /// Returns the message's number. Gestures that follow one another become one.
+    /// Returns the message's number. Gestures that follow one another become one, and the newest lights
+    /// replace those before.
     uint64_t post(std::variant<nlohmann::json, Gesture, Request> content);
     /// All messages since the last call. Waits until there is one, close() is called, or the time is over.
     std::deque<Message> take(double seconds);

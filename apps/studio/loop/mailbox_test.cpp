@@ -26,6 +26,22 @@ TEST(Mailbox, GesturesAddUpAndKeepTheirPlace) {
     EXPECT_TRUE(mailbox.take(0.0).empty());
 }
 
+/// Scenes have hundreds of lights, and a hand drags one of them.
+TEST(Mailbox, TheNewestLightsReplaceThoseBefore) {
+    Mailbox mailbox;
+    mailbox.post(json{{"lights", {1}}});
+    mailbox.post(json{{"lights", {1}}, {"exposure", 1.0}});
+    mailbox.post(json{{"seed", 1}});
+    mailbox.post(json{{"lights", {2}}});
+    const uint64_t last = mailbox.post(json{{"lights", {3}}});
+    const auto messages = mailbox.take(0.0);
+    ASSERT_EQ(messages.size(), 3u);
+    EXPECT_EQ(std::get<json>(messages[0].content).size(), 2u) << "it says more than that";
+    EXPECT_EQ(std::get<json>(messages[1].content), (json{{"seed", 1}}));
+    EXPECT_EQ(std::get<json>(messages[2].content), (json{{"lights", {3}}}));
+    EXPECT_EQ(messages[2].number, last);
+}
+
 TEST(Mailbox, UrgentIsWhatChangesTheFrame) {
     const auto urgent = [](std::variant<json, Gesture, Request> content) {
         Mailbox mailbox;
@@ -36,6 +52,8 @@ TEST(Mailbox, UrgentIsWhatChangesTheFrame) {
     EXPECT_TRUE(urgent(Gesture{.zoom = 1.0f}));
     EXPECT_TRUE(urgent(json{{"exposure", 1.0}, {"denoiser", "svgf"}}));
     EXPECT_FALSE(urgent(json{{"exposure", 1.0}, {"pass", ""}}));
+    EXPECT_FALSE(urgent(json{{"tone_curve", "agx"}}));
+    EXPECT_FALSE(urgent(json{{"kept_settings", {"integrator=path"}}}));
     EXPECT_TRUE(urgent(Request{Request::Kind::SeeAll}));
     EXPECT_FALSE(urgent(Request{Request::Kind::SavePng}));
 }

@@ -96,15 +96,15 @@ void RenderLoop::takeOver(const Standing& standing) {
     show(loadScene(load_, order, {}));
     goTo(standing.home);
     state_ = standing.state;
+    rig_.hand() = standing.hand;
     rig_.choose(*stage_, state_.camera);
-    if (rig_.isFree()) rig_.hand() = standing.hand;
     playback_.reset(standing.time);
     measureExposure_ = false;
     facts_.fault = "the device was lost; everything was set up anew";
 }
 
 void RenderLoop::run() {
-    if (!stage_ && !settings_.source.scene.empty()) load(settings_.source, SceneLoading::Why::First, "");
+    if (!stage_ && !settings_.source.scene.empty()) loadFirst();
     bool rests = false;
     while (!mailbox_.isClosed() && (settings_.quitAfter == 0 || rendered() < settings_.quitAfter)) {
         // The newest messages are for the next frame, which begins when the device has finished the last one.
@@ -136,10 +136,12 @@ void RenderLoop::handleMessages(double patience) {
         // Others than gestures may take long.
         if (!std::holds_alternative<Gesture>(message.content)) publishWaiting();
         if (loading_.isFirst() && !concernsLoading(message)) {
+            dropReplaced(held_, message);
             held_.push_back(std::move(message));
             continue;
         }
         handle(message);
+        hasFailed_ = false;
         messages_ = message.number;
         changedFacts_ = true;
     }
@@ -234,6 +236,8 @@ void RenderLoop::publish() {
     facts_.errors = comparison_.errors();
     facts_.framesEver = rendered();
     facts_.extent = wanted_.extent;
+    facts_.files = filesInUse();
+    facts_.standsIn = isNew_ || networks_.isLoading();
     if (main_) choosePictures();
     const bool isUnderWay = begun_ && main_ && main_.underWay() == begun_->copy;
     shown->number = ++publications_;
@@ -250,6 +254,17 @@ void RenderLoop::publish() {
         waiting_ = {std::move(shown), begun_->copy};
     else
         mailbox_.publish(std::move(shown));
+}
+
+std::vector<std::string> RenderLoop::filesInUse() const {
+    std::vector<std::string> files;
+    const auto add = [&](const scene::SceneSource& source) {
+        for (const std::string& file : {source.scene, source.environment})
+            if (!file.empty()) files.push_back(file);
+    };
+    add(settings_.source);
+    if (loading_) add(loading_.order().source);
+    return files;
 }
 
 /// Publishes the snapshot that waits for its picture, if there is one.
@@ -277,6 +292,10 @@ void RenderLoop::inspect() {
     try {
         images = main_.renderer().dump(state_.pass);
     } catch (const UsageError&) {  // the pass belongs to another integrator or denoiser
+        state_.pass.clear();
+        return inspect();
+    } catch (const gpu::OutOfMemory& fault) {
+        facts_.fault = fault.what();
         state_.pass.clear();
         return inspect();
     }

@@ -56,23 +56,26 @@ class RenderLoop {
 
   private:
     void finish();
-    void load(const scene::SceneSource& source, SceneLoading::Why why, std::string message);
+    void loadFirst();
+    SceneLoading::Order orderToChange() const;
     void finishLoading();
     void show(LoadedScene scene);
     void showFirst(LoadedScene scene);
-    void showOpened(LoadedScene scene, const scene::SceneSource& source);
-    void showRelit(LoadedScene scene, const scene::SceneSource& source);
+    void showOpened(LoadedScene scene, const SceneLoading::Order& order);
+    void showRelit(LoadedScene scene, const SceneLoading::Order& order);
     void goTo(const scene::Camera& home);
     void open(const std::string& file, bool dropped);
     void addLamp(bool sun);
     void takeLampAway(int index);
     void changeBackground();
+    LightDesk deskWithout(std::vector<int> lamps) const;
     void startAnew();
 
     void handleMessages(double patience);
     void handle(const Message& message);
     void edit(const nlohmann::json& changes);
     void steer(const Gesture& gesture);
+    void freeCamera();
     void carryOut(const Request& request);
     void resetCamera();
     void seeAll();
@@ -93,6 +96,8 @@ class RenderLoop {
     bool isOther(const CameraParams& camera) const;
     bool mustRender();
     bool renderWhatIsDue();
+    bool renderNext();
+    bool goBack(const std::string& fault);
     bool previewsFirst();
     void renderTimed(const CameraParams& camera);
     void render(const CameraParams& camera);
@@ -111,6 +116,7 @@ class RenderLoop {
     bool answerProbe();
     void publish();
     void publishWaiting();
+    std::vector<std::string> filesInUse() const;
     void announce();
     void tellCompiling();
 
@@ -160,7 +166,9 @@ class RenderLoop {
     Picker picker_;
     /// The scene is new: until the pipelines of its first frame are compiled, its preview is shown.
     bool isNew_ = false;
-    std::future<void> compiling_;  ///< them
+    std::future<void> compiling_;    ///< them
+    std::optional<State> rendered_;  ///< of the last frame of this scene that was rendered as wanted
+    bool hasFailed_ = false;         ///< the next frame would, too: none is rendered until something changes
     ResolutionControl resolution_;
     std::tuple<Pipeline, uint32_t, bool, int> work_;  ///< what decides how long a pixel takes
     Clock::time_point changed_{};                     ///< when something that is seen has changed last

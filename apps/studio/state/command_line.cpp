@@ -85,13 +85,18 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
     return result;
 }
 
-std::string stateCommandOf(const ShownFrame& frame, const std::string& stateFile) {
+std::string stateCommandOf(const ShownFrame& frame, const std::string& command,
+                           const std::string& stateFile) {
     scene::SceneSource source = frame.source;
     source.lightFile.clear();  // the state has the lights
-    std::string text = "limpid view " + studio::quoted(source.scene) + sourceOptions(source);
+    std::string text = "limpid " + command + " " + studio::quoted(source.scene) + sourceOptions(source);
     if (!frame.clip.empty()) text += " --animation " + quoted(frame.clip);
     if (!frame.weights.empty()) text += " --weights " + quoted(frame.weights);
     return text + " --state " + quoted(stateFile);
+}
+
+std::string writingCommandOf(const std::string& text, const std::string& file) {
+    return "printf '%s\\n' " + quoted(text) + " > " + quoted(file);
 }
 
 std::string pathText(const Playback& playback, float fovDegrees) {

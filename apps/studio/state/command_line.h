@@ -32,8 +32,11 @@ struct CommandLine {
 /// Of the last frame. `pathFile` is named where the camera moved.
 CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, const std::string& pathFile);
 
-/// The `limpid view` that shows the same scene with the state in a file (state_file.h).
-std::string stateCommandOf(const ShownFrame& frame, const std::string& stateFile);
+/// The `limpid view` or `limpid serve` that shows the same scene with the state in a file (state_file.h).
+std::string stateCommandOf(const ShownFrame& frame, const std::string& command, const std::string& stateFile);
+
+/// The command of a shell that writes a line of text to a file.
+std::string writingCommandOf(const std::string& text, const std::string& file);
 
 /// The camera since the reset as a file for --camera-path (docs/animation.md).
 std::string pathText(const Playback& playback, float fovDegrees);

@@ -1,4 +1,5 @@
-// What the studio tells of itself: nothing of it can be changed.
+// What the studio tells of itself: nothing of it can be changed. Clients in other processes get what toJson()
+// of state_json.h has of it.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,9 @@ struct Facts {
     int scenesShown = 0;  ///< number of scenes that were loaded so far
     /// What takes longer than a frame now, such as "loading helmet.glb"; empty: nothing.
     std::string activity;
+    /// Scenes and environments that are shown or being loaded, as they were asked for. They may be read
+    /// again.
+    std::vector<std::string> files;
     int percent = 0;             ///< how much of it is done; 0: too little, or it is not known
     gpu::Extent extent;          ///< of the frame that is computed, or was last
     uint64_t samplesInMean = 0;  ///< per pixel; 0 for pipelines that do not accumulate
@@ -23,7 +27,9 @@ struct Facts {
     uint64_t framesEver = 0;
     bool computing = false;  ///< false: the picture is finished, or rendering is stopped
     bool compiling = false;  ///< the frame that is computed needs shaders that were not compiled before
-    double duration = 0.0;   ///< of the clip or the path, seconds; 0: nothing plays
+    /// The picture is that of a simpler method, until pipelines are compiled or a network is loaded.
+    bool standsIn = false;
+    double duration = 0.0;  ///< of the clip or the path, seconds; 0: nothing plays
     std::vector<std::string> cameras;
     Timings timings;
     /// Of the last frame: until the device had finished it, and to bring its picture to the host after that.

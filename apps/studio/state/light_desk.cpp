@@ -23,6 +23,10 @@ void LightDesk::show(const std::vector<LightControl>& loaded, const scene::Scene
     const auto lamps =
         std::ranges::count(loaded, LightControl::Kind::Lamp, [](const LightControl& c) { return c.kind; });
     firstAdded = static_cast<int>(lamps) - static_cast<int>(source.lights.size());
+    showBackground(source);
+}
+
+void LightDesk::showBackground(const scene::SceneSource& source) {
     const auto radiance = scene::parseBackground(source.background);
     hasBackground = radiance.has_value();
     if (radiance) background = *radiance;

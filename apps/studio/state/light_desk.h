@@ -18,6 +18,8 @@ struct LightDesk {
 
     /// Of a scene just loaded from `source`.
     void show(const std::vector<scene::LightControl>& loaded, const scene::SceneSource& source);
+    /// The background that the source has, also if another one was chosen.
+    void showBackground(const scene::SceneSource& source);
     /// Takes over what a hand did to lights that are still there. `sameSky`: the environment is one of them.
     void carry(const LightDesk& before, bool sameSky = true);
     bool isChanged() const { return lights != original; }

@@ -43,13 +43,14 @@ struct State {
     Resolution resolution = Resolution::Automatic;
     float exposure = 0.0f;  ///< stops
     float fovDegrees = 45.0f;
-    int camera = 0;        ///< index into Facts::cameras
-    CameraPose pose;       ///< changing it makes the camera free
-    bool running = true;   ///< frames are rendered as long as they improve the picture
-    bool playing = false;  ///< the clip, or the camera's path
-    float time = 0.0f;     ///< seconds
-    std::string pass;      ///< pass whose images are shown instead of the picture; empty: none
-    int image = 0;         ///< index into Facts::images
+    float halfHeight = 0.0f;  ///< of what an orthographic camera sees, world units; 0: with perspective
+    int camera = 0;           ///< index into Facts::cameras
+    CameraPose pose;          ///< changing it, or halfHeight, makes the camera free
+    bool running = true;      ///< frames are rendered as long as they improve the picture
+    bool playing = false;     ///< the clip, or the camera's path
+    float time = 0.0f;        ///< seconds
+    std::string pass;         ///< pass whose images are shown instead of the picture; empty: none
+    int image = 0;            ///< index into Facts::images
     InspectorView view;
     ComparisonChoice comparison;
     bool arrows = false;  ///< the motion is downloaded, for arrows

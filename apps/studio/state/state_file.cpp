@@ -13,6 +13,12 @@ constexpr uint64_t maxBytes = uint64_t{64} << 20;  ///< a scene can have many li
 constexpr const char* versionKey = "limpid_state";
 constexpr int version = 1;
 
+json fileOf(const State& state) {
+    json fields = toJson(state);
+    fields[versionKey] = version;
+    return fields;
+}
+
 }  // namespace
 
 json readStateFile(const std::filesystem::path& file) {
@@ -36,9 +42,13 @@ json readStateFile(const std::filesystem::path& file) {
 }
 
 void writeStateFile(const std::filesystem::path& file, const State& state) {
-    json fields = toJson(state);
-    fields[versionKey] = version;
-    writeTextAtomically(file, fields.dump(1) + "\n");
+    writeTextAtomically(file, fileOf(state).dump(1) + "\n");
+}
+
+std::string stateText(const State& state) {
+    json fields = fileOf(state);
+    if (!state.lights.isChanged()) fields.erase("lights");
+    return fields.dump();
 }
 
 }  // namespace limpid::studio

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "studio/state/state.h"
 
@@ -14,5 +15,8 @@ nlohmann::json readStateFile(const std::filesystem::path& file);
 
 /// Throws OutputError.
 void writeStateFile(const std::filesystem::path& file, const State& state);
+
+/// What is in such a file, as one line; without lights that are as the scene has them.
+std::string stateText(const State& state);
 
 }  // namespace limpid::studio

@@ -60,10 +60,13 @@ Entry number(const Texts& texts, Kind kind, double minimum, double maximum, cons
     field.slider = slider;
     using Value = std::remove_cvref_t<decltype(member(std::declval<State&>()))>;
     const std::string key = texts.key;
+    // The ends as a control has them, which clamps to them: 0.01 as a float is below 0.01.
+    const auto least = static_cast<double>(static_cast<Value>(minimum)),
+               most = static_cast<double>(static_cast<Value>(maximum));
     return {field, [=](const State& s) -> json { return member(const_cast<State&>(s)); },
             [=](State& s, const json& v) {
                 const double value = v.get<double>();
-                if (!(value >= minimum && value <= maximum))
+                if (!(value >= std::min(least, minimum) && value <= std::max(most, maximum)))
                     refuse(key, fmt::format("{} is not between {} and {}", value, minimum, maximum));
                 if (kind == Kind::Int && value != std::floor(value))
                     refuse(key, fmt::format("{} is no integer", value));
@@ -345,6 +348,11 @@ void addCamera(std::vector<Entry>& all) {
     all.push_back(number(
         {"fov", "camera", "field of view", "Vertical", "degrees"}, Kind::Float, 0.01, 179.0, {5.0, 150.0},
         [](State & s) -> auto& { return s.fovDegrees; }));
+    all.push_back(number(
+        {"half_height", "camera", "half height",
+         "Half of the height that a camera without perspective sees; 0: with perspective", "world units"},
+        Kind::Float, 0.0, 1e9, {0.0, 100.0, SliderScale::Logarithmic, 0.01},
+        [](State & s) -> auto& { return s.halfHeight; }));
     all.push_back(vector(
         {"eye", "camera", "eye", "Where the camera is", "world units"},
         [](State & s) -> auto& { return s.pose.eye; }));

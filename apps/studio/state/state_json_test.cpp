@@ -122,6 +122,20 @@ TEST(StateJson, WhatDoesNotFitChangesNothing) {
     EXPECT_EQ(toJson(state), before);
 }
 
+/// A control clamps what is typed to the ends, as floats: some of them are beyond the decimal numbers.
+TEST(StateJson, BothEndsOfARangeBelongToIt) {
+    for (const Field& field : fields()) {
+        if (field.kind != Field::Kind::Float) continue;
+        for (const double end : {field.minimum, field.maximum}) {
+            State state;
+            EXPECT_EQ(faultOf(state, {{field.key, end}}), "no error") << field.key;
+            EXPECT_EQ(faultOf(state, {{field.key, static_cast<float>(end)}}), "no error") << field.key;
+        }
+    }
+    State state;
+    EXPECT_THAT(faultOf(state, {{"fov", 0.0099}}), HasSubstr("fov"));
+}
+
 TEST(StateJson, NumbersOfLightsAreLimited) {
     State state = stateWithLights();
     json lights = toJson(state).at("lights");

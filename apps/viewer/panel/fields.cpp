@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
+#include "base/log.h"
 #include "viewer/looks/theme.h"
 #include "viewer/panel/light_panel.h"
 
@@ -158,7 +160,12 @@ void drawField(const Drawing& with, const Field& field) {
     drawControl(with, field, value);
     explainRow(with, helpOf(field, now));
     ImGui::PopID();
-    if (value != now) studio::apply(with.panel.state, {{field.key, value}});
+    if (value == now) return;
+    try {
+        studio::apply(with.panel.state, {{field.key, value}});
+    } catch (const Error& fault) {  // the field keeps its value
+        log::warn("{}", fault.what());
+    }
 }
 
 void drawField(const Drawing& with, const char* key) {

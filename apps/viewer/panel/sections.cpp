@@ -77,7 +77,8 @@ void drawScene(const Drawing& with) {
 void drawCamera(const Drawing& with) {
     if (!section(with, "camera", false)) return;
     beginRows();
-    for (const char* key : {"fov", "eye", "target", "up", "playing", "time"}) drawField(with, key);
+    drawField(with, with.panel.state.halfHeight > 0.0f ? "half_height" : "fov");
+    for (const char* key : {"eye", "target", "up", "playing", "time"}) drawField(with, key);
     drawActions(with, "camera");
     endRows();
 }
