@@ -1,7 +1,12 @@
 // Compares every pass of the a-trous filter with the version in double precision, on identical inputs.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "tests/denoise/denoise_fixture.h"
+#include "tests/oracle/double_denoise_fixture.h"
 
 namespace limpid::test {
 namespace {
@@ -110,6 +115,40 @@ INSTANTIATE_TEST_SUITE_P(
     nameOf);
 
 class AtrousTest : public DenoiseTest {};
+
+/// Also in the first frame.
+TEST_F(AtrousTest, SamplesThatAreNoNumbersDarkenNothing) {
+    HostFrame frame = frontalPlane(64, 36);
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        const float light = p % 7 == 3 ? std::numeric_limits<float>::quiet_NaN() : 0.5f;
+        for (size_t c = 0; c < 3; ++c) frame.diffuse[4 * p + c] = light;
+    }
+    for (const bool temporal : {false, true}) {
+        DenoiserSettings settings;
+        settings.atrous.temporal = temporal;
+        const std::vector<float> picture = denoise(*denoise::findDenoiser("atrous"), frame, settings);
+        for (size_t i = 0; i < picture.size(); ++i) {
+            if (i % 4 == 3) continue;
+            ASSERT_NEAR(picture[i], 0.5f, 1e-3f) << "pixel " << i / 4 << " temporal " << temporal;
+        }
+    }
+}
+
+/// Rounding must not make weights of more than 1.
+TEST_F(AtrousTest, NormalsMayHaveNoToleranceAtAll) {
+    const HostFrame frame = SyntheticScene({}).frame(0, 64, 36, 1);
+    DenoiserSettings settings;
+    settings.atrous = {.temporal = false, .normalFactor = 1e-9f};
+    const std::vector<float> picture = denoise(*denoise::findDenoiser("atrous"), frame, settings);
+    const float brightest = *std::ranges::max_element(frame.diffuse) +
+                            *std::ranges::max_element(frame.specular) +
+                            *std::ranges::max_element(frame.emission);
+    for (size_t i = 0; i < picture.size(); ++i) {
+        ASSERT_TRUE(std::isfinite(picture[i])) << i / 4;
+        if (i % 4 == 3) continue;
+        ASSERT_LE(picture[i], brightest) << i / 4;
+    }
+}
 
 TEST_F(AtrousTest, LevelsAreAsManyAsAskedForAndNoneLeavesThePicture) {
     const HostFrame frame = SyntheticScene({}).frame(0, 64, 36, 1);

@@ -76,6 +76,29 @@ TEST_P(ColorDenoiserSuite, AConstantImageStaysConstant) {
     }
 }
 
+/// Other renderers give the sky's light as they give that of surfaces. Its albedo is 0.
+TEST_P(ColorDenoiserSuite, BrightSkiesStay) {
+    HostFrame frame = frontalPlane(columns, rows);
+    constexpr float sky = 5000.0f;
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        const bool isSky = p < frame.pixelCount() / 2;
+        for (size_t c = 0; c < 3; ++c) {
+            frame.diffuse[4 * p + c] = isSky ? sky : 0.25f;
+            if (!isSky) continue;
+            frame.albedo[4 * p + c] = 0.0f;
+            frame.depth[4 * p + c] = 0.0f;
+        }
+    }
+    for (int number = 0; number < 3; ++number) {
+        const std::vector<float> picture = denoise(method(), frame);
+        for (size_t i = 0; i < picture.size(); ++i) {
+            if (i % 4 == 3) continue;
+            const float expected = frame.diffuse[i];
+            ASSERT_NEAR(picture[i], expected, 1e-3f * expected) << "frame " << number << " pixel " << i / 4;
+        }
+    }
+}
+
 TEST_P(ColorDenoiserSuite, TexturesUnderConstantLightStaySharp) {
     const SyntheticScene scene({.cameraMoves = true});
     for (int number = 0; number < frames; ++number) {

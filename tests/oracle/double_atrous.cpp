@@ -106,10 +106,12 @@ Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>
     const bool alongForward = params.plane && frame.camera.orthographic == 0;
     Demodulated out;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
-        const dvec3 light = dvec3(mean[p]) / modulation(pixels.albedo(p), params.minAlbedo);
-        out.light.emplace_back(storable(light.x), storable(light.y), storable(light.z), mean[p].w);
-        out.geometry.normal.push_back(pixels.normal(p));
         const double z = pixels.distance(p);
+        const dvec3 divisor = z > 0.0 ? modulation(pixels.albedo(p), params.minAlbedo) : dvec3(1.0);
+        const dvec3 light = dvec3(mean[p]) / divisor;
+        out.light.emplace_back(storable(light.x), storable(light.y), storable(light.z),
+                               z > 0.0 ? mean[p].w : -1.0);
+        out.geometry.normal.push_back(pixels.normal(p));
         out.geometry.distance.push_back(alongForward ? z / glm::length(pixels.ray(p)) : z);
     }
     return out;

@@ -77,7 +77,7 @@ TEST_F(SvgfByHand, NothingFound) {
     frame.depth[4 * middle] = frame.depth[4 * middle + 1] = 0.0f;  // the sky
     EXPECT_EQ(accumulate().color[middle], dvec4(0, 0, 0, -1));
     frame.diffuse[4 * middle] = 2.0f;
-    EXPECT_EQ(accumulate().color[middle], dvec4(4, 4, 4, -1));
+    EXPECT_EQ(accumulate().color[middle], dvec4(2, 2, 2, -1));
     EXPECT_EQ(accumulate().moments[middle], dvec4(0));
 }
 
@@ -129,7 +129,7 @@ TEST_F(SvgfByHand, AntiLagLeavesWhatHasNoHistory) {
     params.search = false;
     expect(dvec3(4), dvec4(4, 16, 4, 1));
     frame.depth[4 * middle] = frame.depth[4 * middle + 1] = 0.0f;  // the sky
-    EXPECT_EQ(accumulate().color[middle], dvec4(4, 4, 4, -1));
+    EXPECT_EQ(accumulate().color[middle], dvec4(2, 2, 2, -1));
     EXPECT_EQ(accumulate().moments[middle], dvec4(0));
 }
 

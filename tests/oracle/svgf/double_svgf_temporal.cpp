@@ -182,7 +182,8 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     const Old old = find(p, pixel);
     pixel.rejected = sample.rejected;
     if (pixel.failure == 1) {
-        color = dvec4(sample.x, -1.0);
+        const dvec3 c = signalOf(DoubleFrame(frame_), signal_, p);
+        color = dvec4(isFiniteInFloat(c) ? glm::clamp(c, -largestHalf, largestHalf) : dvec3(0.0), -1.0);
         return;
     }
     if (sample.rejected) {
@@ -285,8 +286,11 @@ std::vector<dvec4> svgfModulate(const denoise::HostFrame& frame, const std::vect
     std::vector<dvec4> result;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         dvec3 sum = pixels.emission(p);
-        for (const SvgfFiltered& filtered : signals)
-            sum += dvec3(filtered.color[p]) * modulationOf(pixels, filtered.signal, p, minAlbedo);
+        for (const SvgfFiltered& filtered : signals) {
+            const bool divided = filtered.color[p].w >= 0.0;
+            sum += dvec3(filtered.color[p]) *
+                   (divided ? modulationOf(pixels, filtered.signal, p, minAlbedo) : dvec3(1.0));
+        }
         result.emplace_back(sum, 1.0);
     }
     return result;

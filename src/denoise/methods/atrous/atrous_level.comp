@@ -73,7 +73,7 @@ Centre begin(ivec2 at, int number) {
     centre.towards = planeOf(tap, at);
     centre.here = tap.depth * centre.towards.x;
     // The more samples the mean has, the more the centre weighs relative to its neighbours.
-    const float weight = splineWeight(ivec2(0)) * (1.0 + tap.light.a * params.fade);
+    const float weight = tap.light.a > 0.0 ? splineWeight(ivec2(0)) * (1.0 + tap.light.a * params.fade) : 0.0;
     centre.sum = vec4(tap.light.rgb * weight, weight);
     centre.light = tap.light;
     centre.seen = tap.seen;
@@ -85,18 +85,22 @@ void addTo(inout Centre centre, Tap tap, ivec2 from) {
     const float point = ORTHOGRAPHIC ? tap.depth * centre.towards.x + beside : tap.depth * (centre.towards.x + beside);
     const float deviation = point - centre.here;
     // |n - n'|^2 of unit vectors is 2 - 2 dot(n, n').
-    float exponent = dot(tap.normal, centre.normal) - params.normalScale - deviation * deviation;
+    const float turned = min(dot(tap.normal, centre.normal) - params.normalScale, 0.0);  // rounding may say more
+    float exponent = turned - deviation * deviation;
     if (COLOR) {
         const vec3 change = tap.light.rgb - centre.light.rgb;
         exponent -= dot(change, change) * params.colorScale;
     }
     const float weight = splineWeight(from) * exp2(exponent);
-    centre.sum += (tap.seen ? weight : 0.0) * vec4(tap.light.rgb, 1.0);
+    centre.sum += (tap.seen && tap.light.a > 0.0 ? weight : 0.0) * vec4(tap.light.rgb, 1.0);
 }
 
 void store(ivec2 at, Centre centre) {
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
-    STORE_HALF4(filtered, at, centre.seen ? vec4(centre.sum.rgb / centre.sum.a, centre.light.a) : centre.light);
+    const bool hasMean = centre.seen && centre.sum.a > 0.0;
+    // Light that comes from neighbours alone counts at the next level.
+    const vec4 mean = vec4(centre.sum.rgb / centre.sum.a, max(centre.light.a, 1e-3));
+    STORE_HALF4(filtered, at, hasMean ? mean : centre.light);
 }
 
 bool isFiltered(Centre centre) {

@@ -96,7 +96,9 @@ vec4 accumulate(ivec2 at) {
     const bool seen = distanceOf(surface) > 0.0;
     const vec4 packed = seen ? packedMoments(now.moments) : vec4(0.0), stored = unpackedMoments(packed);
     imageStore(moments, at, packed);
-    STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(stored)) : vec4(x, SVGF_NOTHING_SEEN));
+    // Not divided by the albedo of nothing, which would take bright skies beyond the largest half.
+    const vec3 own = clamp(finiteOr(light, vec3(0.0)), -MAX_HALF, MAX_HALF);
+    STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(stored)) : vec4(own, SVGF_NOTHING_SEEN));
     if (STABILISE) STORE_UINT1(stablePast, at, packedStable(now.stable));
     return stored;
 }
