@@ -183,7 +183,7 @@ typedef enum limpid_motion_direction {
 } limpid_motion_direction;
 
 typedef enum limpid_motion_depth {
-    LIMPID_MOTION_2D = 0, /* xy only: the change of depth is computed as if objects stood still */
+    LIMPID_MOTION_2D = 0, /* xy only: the change of depth is computed as if objects, and what reflects, stood still */
     LIMPID_MOTION_DISTANCE =
         1 /* z: the change of distance from the eye, world units, with the sign convention of xy */
 } limpid_motion_depth;
@@ -206,7 +206,7 @@ typedef struct limpid_denoiser_desc {
     limpid_normal_encoding normal_encoding;
     limpid_space normal_space;
     limpid_depth depth;
-    float far_depth; /* for LIMPID_DEPTH_DISTANCE and LINEAR; 0: 1e9 */
+    float far_depth; /* for LIMPID_DEPTH_DISTANCE and LINEAR; not negative; 0: 1e9 */
     limpid_motion_unit motion_unit;
     limpid_motion_direction motion_direction;
     limpid_motion_depth motion_depth;
@@ -223,8 +223,11 @@ typedef struct limpid_denoiser_desc {
  * the last one that this denoiser took without an error: if you skip frames, give that one's matrices, and motion
  * since then, or set `reset`. */
 typedef struct limpid_camera {
-    float view[16];       /* from world to view space */
-    float projection[16]; /* from view to clip space; depth 0 to 1. Perspective or orthographic. */
+    float view[16]; /* from world to view space: a rotation (or reflection) and a translation, without scale */
+    /* From view to clip space; depth 0 to 1. Perspective or orthographic, also off-centre. Depth must not depend on x
+     * and y (no oblique near plane), and the clip volume of an orthographic one must not begin behind the eye: move
+     * the eye back instead. */
+    float projection[16];
     /* Of the previous frame. Not read in the first frame, after a cut or a new size, and by methods without history
      * (BILATERAL unless taa.frames is above 1). */
     float previous_view[16], previous_projection[16];
@@ -235,7 +238,8 @@ typedef struct limpid_camera {
 
 /* Creates a denoiser, and compiles its pipelines on several threads if `device` does not have them yet. Its images are
  * created for the first frame; limpid_denoiser_memory() returns their size. `*denoiser` is NULL on failure.
- * LIMPID_ERROR_UNSUPPORTED: the device has no images of this size (its maxImageDimension2D). */
+ * LIMPID_ERROR_UNSUPPORTED: the device has no images of this size (its maxImageDimension2D), or it is a GPU and has no
+ * buffers of 8 bytes a pixel (maxStorageBufferRange, maxBufferSize, maxMemoryAllocationSize). */
 LIMPID_API limpid_result limpid_denoiser_create(limpid_device* device, const limpid_denoiser_desc* desc,
                                                 limpid_denoiser** denoiser);
 /* NULL is ignored. Everything it has recorded must be finished on the device. */
@@ -281,8 +285,10 @@ LIMPID_API limpid_result limpid_denoiser_get(const limpid_denoiser* denoiser, co
 
 /* Floats in host memory. */
 typedef struct limpid_host_image {
-    const float* data;   /* NULL: the image is missing */
-    uint32_t components; /* per pixel in memory: 1 to 4 */
+    const float* data; /* NULL: the image is missing */
+    /* Per pixel in memory: 3 or 4 for colours (LIMPID_METHOD_VISIBILITY: 1 to 4) and normals (octahedral: 2 to 4), 2
+     * to 4 for motion (LIMPID_MOTION_DISTANCE: 3 or 4), 1 to 4 for all else. */
+    uint32_t components;
     size_t pixel_stride; /* in bytes, from pixel to pixel; 0: components * 4 */
     size_t row_stride;   /* in bytes, from row to row; 0: width * pixel stride */
 } limpid_host_image;
@@ -301,9 +307,9 @@ typedef struct limpid_host_frame {
     int32_t reset; /* not 0: a cut; history starts with this frame */
 } limpid_host_frame;
 
-/* Denoises one frame and waits for it. Call it for frames in order. Not available on devices of denoise_vulkan.h.
- * LIMPID_ERROR_INVALID_ARGUMENT: an input is missing, an image has a wrong number of components, the method does not
- * have a requested output, or a matrix of the camera is not finite or singular. LIMPID_ERROR_OUT_OF_MEMORY,
+/* Denoises one frame and waits for it, also without any output. Call it for frames in order. Not available on devices
+ * of denoise_vulkan.h. LIMPID_ERROR_INVALID_ARGUMENT: an input is missing, an image has a wrong number of components,
+ * the method does not have a requested output, or the camera is not as limpid_camera says. LIMPID_ERROR_OUT_OF_MEMORY,
  * LIMPID_ERROR_DEVICE_LOST. After INVALID_ARGUMENT the outputs are unchanged, and history does not advance: the next
  * frame follows the last one that succeeded. Only a cut (`reset`) may stay in effect. After other errors the outputs
  * are undefined; call limpid_denoiser_reset() before you go on. */

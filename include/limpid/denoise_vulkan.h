@@ -102,11 +102,14 @@ typedef struct limpid_vulkan_frame {
 } limpid_vulkan_frame;
 
 /* Records one frame. LIMPID_ERROR_INVALID_ARGUMENT: an input is missing or its format is not set or not of the right
- * kind, the method does not have a requested output, an output's format is another one, two outputs have the same
- * image, or a matrix of the camera that is read is not finite or singular. LIMPID_ERROR_OUT_OF_MEMORY,
- * LIMPID_ERROR_DEVICE_LOST. After a failure the command buffer may still be submitted: Limpid has added nothing of
- * effect, and history does not advance; only a cut (`reset`) stays in effect. A recorded frame must run: if you drop
- * its command buffer, destroy the denoiser. */
+ * kind, the method does not have a requested output, an output's format is another one, an output has the image of
+ * an input or of another output, or what is read of the camera is not as limpid_camera says.
+ * LIMPID_ERROR_OUT_OF_MEMORY, LIMPID_ERROR_DEVICE_LOST. After a failure the command buffer may still be submitted:
+ * Limpid has added nothing of effect, and history does not advance; only a cut (`reset`) stays in effect. After
+ * OUT_OF_MEMORY you may go on with the size of the last frame that succeeded, or a smaller one. Images of that frame's
+ * size are kept, since it may still be running: if there is no memory for them beside those of a new size, wait for
+ * your frames, destroy the denoiser and create another one. A recorded frame must run: if you drop its command buffer,
+ * destroy the denoiser. */
 LIMPID_API limpid_result limpid_record(limpid_denoiser* denoiser, VkCommandBuffer commands,
                                        const limpid_vulkan_frame* frame);
 

@@ -1,8 +1,8 @@
 // Limpid's denoisers inside a Vulkan program, for C++17: denoise_vulkan.h with the classes of denoise.hpp.
 //
 //     limpid::enableFeatures(features);                        // before vkCreateDevice
-//     limpid::Device device = limpid::adopt(instance, physicalDevice, vulkanDevice, queueFamily,
-//     vkGetInstanceProcAddr); limpid::Denoiser denoiser(device, limpid::DenoiserDesc(1280, 720));
+//     limpid::Device device = limpid::adopt(instance, physicalDevice, own, family, vkGetInstanceProcAddr);
+//     limpid::Denoiser denoiser(device, limpid::DenoiserDesc(1280, 720));
 //     limpid::VulkanFrame frame;
 //     frame.inputs[LIMPID_INPUT_RADIANCE] = ...;
 //     limpid::record(denoiser, commands, frame);

@@ -430,6 +430,17 @@ TEST_F(KpcnTest, AnySizeWorks) {
     }
 }
 
+TEST_F(KpcnTest, APixelAlwaysCountsItself) {
+    KpcnWeights weights = randomWeights(1, 7, 5);
+    weights.facing = 2.0f;  // no two normals are alike
+    const HostFrame frame = SyntheticScene({}).frame(1, 41, 23, 1);
+    std::vector<float> noisy = frame.diffuse;
+    for (size_t i = 0; i < noisy.size(); ++i) noisy[i] += frame.specular[i] + frame.emission[i];
+    for (const KpcnPrecision precision : precisions())
+        EXPECT_LT(relativeError(denoise(method(), frame, settingsWith(weights, precision)), noisy), 1e-3)
+            << denoise::toString(precision);
+}
+
 TEST_F(KpcnTest, NoNanGoesInOrComesOut) {
     const DenoiserSettings settings = smallSettings();
     const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),

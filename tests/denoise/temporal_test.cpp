@@ -186,6 +186,20 @@ TEST_F(TemporalTest, RejectedSamplesAreCountedAndLeaveTheHistoryAlone) {
     EXPECT_EQ(denoise::countDisocclusion(graph_.downloadUint(device(), output_.disocclusion)).rejected, 2u);
 }
 
+TEST_F(TemporalTest, AHistoryBelowOneFrameCountsAsOne) {
+    const SyntheticScene scene({});
+    std::vector<std::vector<float>> pictures;
+    for (const float longest : {0.25f, 1.0f}) {
+        DenoiserSettings settings;
+        settings.temporal.maxHistory = longest;
+        graph_.resetHistories();
+        for (int number = 0; number < 3; ++number)
+            denoise(*denoise::findDenoiser("temporal"), scene.frame(number, 32, 18, 1), settings);
+        pictures.push_back(graph_.downloadFloat(device(), output_.beauty));
+    }
+    EXPECT_EQ(pictures[0], pictures[1]);
+}
+
 TEST_F(TemporalTest, DisocclusionIsShownInColours) {
     const SyntheticScene scene({.cameraMoves = true, .objectMoves = true});
     DenoiserSettings settings;

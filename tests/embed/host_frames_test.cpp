@@ -33,13 +33,14 @@ class HostFramesTest : public DenoiseTest {
     }
     static void TearDownTestSuite() { limpid_device_destroy(std::exchange(device_, nullptr)); }
 
-    void create(limpid_method method, uint32_t signals = 2) {
+    void create(limpid_method method, uint32_t signals = 2,
+                limpid_motion_depth motionDepth = LIMPID_MOTION_DISTANCE) {
         limpid_denoiser_desc desc = {sizeof desc};
         desc.method = method;
         desc.width = width;
         desc.height = height;
         desc.signals = signals;
-        desc.motion_depth = LIMPID_MOTION_DISTANCE;
+        desc.motion_depth = motionDepth;
         ASSERT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_OK) << limpid_last_error();
     }
 
@@ -218,10 +219,59 @@ TEST_F(HostFramesTest, SaysWhatIsMissing) {
     EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(limpid_denoise_host(nullptr, &given), LIMPID_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(limpid_denoise_host(denoiser_, nullptr), LIMPID_ERROR_INVALID_ARGUMENT);
+    for (const auto& [input, few] : {std::pair{LIMPID_INPUT_ALBEDO, 1u},
+                                     {LIMPID_INPUT_NORMAL, 2u},
+                                     {LIMPID_INPUT_MOTION, 2u},
+                                     {LIMPID_INPUT_DEPTH, 0u}}) {
+        given = hostFrame(frame, depths, ids, result);
+        given.inputs[input].components = few;
+        EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT) << input;
+        EXPECT_THAT(limpid_last_error(), HasSubstr("components"));
+    }
     EXPECT_EQ(limpid_denoiser_set(denoiser_, "svgf.nothing", 1), LIMPID_ERROR_INVALID_ARGUMENT);
     EXPECT_THAT(limpid_last_error(), HasSubstr("svgf.nothing"));
     given = hostFrame(frame, depths, ids, result);
     EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+    given.outputs[LIMPID_OUTPUT_COLOR] = {};
+    EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << "a frame for the history alone";
+}
+
+/// The camera approaches a mirror. Motion has no depth, and that of the surface is unknown: the history of
+/// the specular light is only found if the mirror's distance in the previous frame is known.
+TEST_F(HostFramesTest, ReflectionsAreFollowedWithoutDepthOfMotion) {
+    create(LIMPID_METHOD_SVGF, 2, LIMPID_MOTION_2D);
+    for (const auto& [name, value] : {std::pair{"svgf.antilag", 0.0}, {"svgf.levels", 0.0}})
+        ASSERT_EQ(limpid_denoiser_set(denoiser_, name, value), LIMPID_OK) << limpid_last_error();
+    constexpr size_t count = size_t{width} * height;
+    const std::vector<float> radiance(3 * count, 0.5f), unknown(2 * count, NAN);
+    std::vector<float> normals(3 * count, 0.0f), distances(count), moved(3 * count, NAN), clean(3 * count);
+    for (size_t p = 0; p < count; ++p) {
+        normals[3 * p + 2] = 1.0f;
+        moved[3 * p] = 0.01f, moved[3 * p + 1] = 0.0f;
+    }
+    CameraParams before{};
+    for (const float away : {2.0f, 1.6f}) {
+        const CameraParams camera{
+            .origin = {0, 0, away}, .forward = {0, 0, -1}, .right = {0.5f, 0, 0}, .up = {0, 0.3f, 0}};
+        for (size_t p = 0; p < count; ++p) {
+            const float x = (static_cast<float>(p % width) + 0.5f) / width - 0.5f;
+            const float y = (static_cast<float>(p / width) + 0.5f) / height - 0.5f;
+            distances[p] = away * std::sqrt(x * x + 0.36f * y * y + 1.0f);
+        }
+        const std::vector<float> specular(3 * count, away == 2.0f ? 1.0f : 0.0f);
+        limpid_host_frame given = {sizeof given};
+        given.inputs[LIMPID_INPUT_RADIANCE] = {radiance.data(), 3, 0, 0};
+        given.inputs[LIMPID_INPUT_SPECULAR] = {specular.data(), 3, 0, 0};
+        given.inputs[LIMPID_INPUT_NORMAL] = {normals.data(), 3, 0, 0};
+        given.inputs[LIMPID_INPUT_DEPTH] = {distances.data(), 1, 0, 0};
+        given.inputs[LIMPID_INPUT_MOTION] = {unknown.data(), 2, 0, 0};
+        given.inputs[LIMPID_INPUT_REFLECTION_MOTION] = {moved.data(), 3, 0, 0};  // z is not read
+        given.outputs[LIMPID_OUTPUT_SPECULAR] = {clean.data(), 3, 0, 0};
+        given.camera = matricesOf(camera, away == 2.0f ? camera : before);
+        before = camera;
+        ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+    }
+    EXPECT_GT(clean[3 * (height / 2 * width + width / 2)], 0.3f) << "half of the previous frame's light";
 }
 
 TEST_F(HostFramesTest, ARefusedOutputChangesNothing) {
@@ -253,6 +303,13 @@ TEST_F(HostFramesTest, RefusesImpossibleDescriptions) {
     desc.width = desc.height = 8;
     desc.method = static_cast<limpid_method>(77);
     EXPECT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_ERROR_INVALID_ARGUMENT);
+    desc.method = LIMPID_METHOD_SVGF;
+    for (const float farDepth : {-1.0f, NAN}) {
+        desc.far_depth = farDepth;
+        EXPECT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_ERROR_INVALID_ARGUMENT);
+        EXPECT_THAT(limpid_last_error(), HasSubstr("far_depth"));
+    }
+    desc.far_depth = 0.0f;
     desc.method = LIMPID_METHOD_VISIBILITY;
     desc.signals = 2;
     EXPECT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_ERROR_INVALID_ARGUMENT);

@@ -186,8 +186,10 @@ TEST_F(IngestReflectionTest, FollowsReflectionsInSpheres) {
 }
 
 TEST_F(IngestReflectionTest, RoughSurfacesAndUnknownHitsHaveNone) {
-    const Frame rough = frameOf({}, now_, before_, 0.5f);
-    EXPECT_EQ(errorsOf(rough, run(rough, now_, before_)).count, 0u);
+    for (const float roughness : {0.5f, -1.0f, NAN}) {  // negative and NaN: unknown
+        const Frame rough = frameOf({}, now_, before_, roughness);
+        EXPECT_EQ(errorsOf(rough, run(rough, now_, before_)).count, 0u) << roughness;
+    }
     Frame unknown = frameOf({}, now_, before_, 0.0f);
     for (size_t p = 0; p < unknown.truth.size(); ++p)
         unknown.hitDistance[4 * p] = std::array{0.0f, -1.0f, NAN}[p % 3];

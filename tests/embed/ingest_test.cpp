@@ -1,7 +1,8 @@
 // Tests the ingest pass: frames in all encodings are converted to the same internal layers.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
+#include <utility>
 
 #include "denoise/api/instance.h"
 #include "tests/denoise/denoise_fixture.h"
@@ -9,6 +10,8 @@
 
 namespace limpid::test {
 namespace {
+
+using testing::HasSubstr;
 
 constexpr uint32_t width = 24, height = 16;
 constexpr gpu::Extent extent{width, height};
@@ -82,6 +85,61 @@ class IngestTest : public DenoiseTest {
         }
     }
 };
+
+std::string faultOf(const limpid_camera& camera) {
+    limpid_denoiser_desc desc = {};
+    desc.width = width;
+    desc.height = height;
+    try {
+        denoise::ingestParams(desc, camera, true);
+    } catch (const UsageError& fault) {
+        return fault.what();
+    }
+    return "";
+}
+
+TEST(IngestParams, RefuseCamerasThatCannotBeUsed) {
+    for (const bool orthographic : {false, true}) {
+        CameraParams camera{
+            .origin = {0, 2, 0}, .forward = {0, -1, 0}, .right = {1.5f, 0, 0}, .up = {0, 0, -1}};
+        camera.orthographic = orthographic ? 1u : 0u;
+        const limpid_camera good = matricesOf(camera, camera);
+        EXPECT_EQ(faultOf(good), "");
+        for (const float jitter : {0.6f, -0.6f, NAN}) {
+            limpid_camera bad = good;
+            bad.jitter[1] = jitter;
+            EXPECT_THAT(faultOf(bad), HasSubstr("jitter")) << jitter;
+        }
+        limpid_camera bad = good;
+        for (size_t column = 0; column < 3; ++column) bad.view[4 * column] *= 1.01f;
+        EXPECT_THAT(faultOf(bad), HasSubstr("'view' is not rigid"));
+        bad = good;
+        bad.view[12] = NAN;
+        EXPECT_THAT(faultOf(bad), HasSubstr("'view' is singular, or not finite"));
+        bad = good;
+        bad.previous_projection[2] = 0.1f;
+        EXPECT_THAT(faultOf(bad), HasSubstr("'previous_projection' is oblique"));
+        bad = good;
+        bad.projection[8] = 0.2f;  // off-centre if it is perspective
+        EXPECT_THAT(faultOf(bad), HasSubstr(orthographic ? "'projection' is oblique" : ""));
+        EXPECT_EQ(faultOf(bad).empty(), !orthographic);
+    }
+}
+
+/// Whether depth is reversed, and so where the camera looks, could not be told.
+TEST(IngestParams, RefuseParallelViewsFromBehindTheEye) {
+    const CameraParams camera{
+        .origin = {0, 2, 0}, .forward = {0, -1, 0}, .right = {1.5f, 0, 0}, .up = {0, 0, -1}};
+    limpid_camera given = matricesOf(camera, camera);
+    for (const auto& [near, far] : {std::pair{0.0, 10.0}, {10.0, 0.0}, {5.0, 1000.0}}) {
+        copyMatrix(glm::orthoRH_ZO(-1.0, 1.0, -1.0, 1.0, near, far), given.projection);
+        EXPECT_EQ(faultOf(given), "") << near;
+    }
+    for (const auto& [near, far] : {std::pair{-10.0, 1000.0}, {-10.0, 10.0}, {-1000.0, 10.0}}) {
+        copyMatrix(glm::orthoRH_ZO(-1.0, 1.0, -1.0, 1.0, near, far), given.projection);
+        EXPECT_THAT(faultOf(given), HasSubstr("begins behind the eye")) << near;
+    }
+}
 
 TEST_F(IngestTest, DistancesAndSignedNormals) {
     const Given given = still();

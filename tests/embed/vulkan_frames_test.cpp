@@ -241,6 +241,12 @@ TEST_F(VulkanFramesTest, RefusesSizesThatTheDeviceDoesNotHave) {
     EXPECT_EQ(limpid_denoiser_create(adopted_, &desc, &large), expected);
     EXPECT_EQ(limpid_denoiser_resize(denoiser, 1, 32768), expected);
     limpid_denoiser_destroy(large);
+    // On GPUs, the buffers of the largest pictures exceed most limits.
+    desc.height = 32768;
+    const uint64_t range = device().impl().context->limits().maxStorageBufferRange;
+    if (gpu::filterBacking(device()) == gpu::Backing::Buffer && range < uint64_t{8} * 32768 * 32768) {
+        EXPECT_EQ(limpid_denoiser_create(adopted_, &desc, &large), LIMPID_ERROR_UNSUPPORTED);
+    }
 }
 
 TEST_F(VulkanFramesTest, DamagedPipelineCachesAreIgnored) {
@@ -274,6 +280,7 @@ struct Heap {
     const gpu::Context* context;
     bool maps = true;
     int blocks = 0, freed = 0;
+    uint64_t used = 0, room = UINT64_MAX;  ///< bytes
 
     limpid_vulkan_device_desc described() {
         limpid_vulkan_device_desc desc = {};
@@ -285,6 +292,7 @@ struct Heap {
         desc.free = [](void* user, const limpid_vulkan_memory* block) {
             auto& from = *static_cast<Heap*>(user);
             from.context->vk().FreeMemory(from.context->device(), block->memory, nullptr);
+            from.used -= reinterpret_cast<uintptr_t>(block->handle);
             ++from.freed;
         };
         return desc;
@@ -293,6 +301,7 @@ struct Heap {
   private:
     VkResult allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags properties,
                       limpid_vulkan_memory& block) {
+        if (used + requirements.size > room) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
         VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
         info.allocationSize = requirements.size;
         const auto& types = context->memoryProperties();
@@ -304,6 +313,8 @@ struct Heap {
         if (result == VK_SUCCESS && maps && (properties & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT))
             vk.MapMemory(vk.device, block.memory, 0, VK_WHOLE_SIZE, 0, &block.mapped);
         ++blocks;
+        used += requirements.size;
+        block.handle = reinterpret_cast<void*>(uintptr_t{requirements.size});
         return result;
     }
 };
@@ -343,6 +354,51 @@ TEST_F(VulkanFramesTest, TakesMemoryFromTheCaller) {
     EXPECT_EQ(picture, denoiseSequence(create(), scene, 2));
 }
 
+/// As while a window is dragged: each frame has another size.
+TEST_F(VulkanFramesTest, ImagesOfEarlierSizesAreFreedSoon) {
+    Heap heap{.context = &program()};
+    ASSERT_EQ(adopt(heap.described()), LIMPID_OK) << limpid_last_error();
+    limpid_denoiser* const denoiser = create();
+    denoiseSequence(denoiser, SyntheticScene({}), 3);
+    const int ofOneSize = heap.blocks - heap.freed;
+    for (uint32_t more = 1; more <= 6; ++more) {
+        ASSERT_EQ(limpid_denoiser_resize(denoiser, width + more, height), LIMPID_OK) << limpid_last_error();
+        const auto f = upload(SyntheticScene({}), 0, {width + more, height});
+        run([&](VkCommandBuffer commands) {
+            EXPECT_EQ(limpid_record(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
+        });
+        EXPECT_LE(heap.blocks - heap.freed, 3 * ofOneSize) << "this size, and those of two earlier frames";
+    }
+    limpid_denoiser_destroy(std::exchange(denoisers_.back(), nullptr));
+    limpid_device_destroy(std::exchange(adopted_, nullptr));
+    EXPECT_EQ(heap.freed, heap.blocks);
+    ASSERT_EQ(adopt({}), LIMPID_OK);
+}
+
+TEST_F(VulkanFramesTest, GoesOnAfterMemoryHasRunOut) {
+    Heap heap{.context = &program()};
+    ASSERT_EQ(adopt(heap.described()), LIMPID_OK) << limpid_last_error();
+    limpid_denoiser* const denoiser = create();
+    const auto record = [&](gpu::Extent extent) {
+        EXPECT_EQ(limpid_denoiser_resize(denoiser, extent.width, extent.height), LIMPID_OK);
+        const auto f = upload(SyntheticScene({}), 0, extent);
+        limpid_result result = LIMPID_OK;
+        run([&](VkCommandBuffer commands) { result = limpid_record(denoiser, commands, &f->frame); });
+        return result;
+    };
+    constexpr gpu::Extent first{width, height}, large{128, 96};
+    for (int number = 0; number < 3; ++number) ASSERT_EQ(record(first), LIMPID_OK) << limpid_last_error();
+    heap.room = heap.used + 20000;  // less than one image of the large size takes
+    for (int attempt = 0; attempt < 3; ++attempt) EXPECT_EQ(record(large), LIMPID_ERROR_OUT_OF_MEMORY);
+    EXPECT_EQ(record(first), LIMPID_OK) << limpid_last_error();
+    heap.room = UINT64_MAX;
+    EXPECT_EQ(record(large), LIMPID_OK) << limpid_last_error();
+    limpid_denoiser_destroy(std::exchange(denoisers_.back(), nullptr));
+    limpid_device_destroy(std::exchange(adopted_, nullptr));
+    EXPECT_EQ(heap.freed, heap.blocks);
+    ASSERT_EQ(adopt({}), LIMPID_OK);
+}
+
 TEST_F(VulkanFramesTest, SaysWhatIsWrong) {
     limpid_denoiser* denoiser = create();
     const SyntheticScene scene({});
@@ -371,6 +427,14 @@ TEST_F(VulkanFramesTest, SaysWhatIsWrong) {
         bad.outputs[LIMPID_OUTPUT_RADIANCE] = bad.outputs[LIMPID_OUTPUT_COLOR];
         EXPECT_EQ(limpid_record(denoiser, commands, &bad), LIMPID_ERROR_INVALID_ARGUMENT);
         EXPECT_THAT(limpid_last_error(), HasSubstr("have the same image"));
+        bad = f->frame;
+        bad.inputs[LIMPID_INPUT_RADIANCE] = bad.outputs[LIMPID_OUTPUT_COLOR];
+        EXPECT_EQ(limpid_record(denoiser, commands, &bad), LIMPID_ERROR_INVALID_ARGUMENT);
+        EXPECT_THAT(limpid_last_error(), HasSubstr("'radiance' and the output 'color' have the same image"));
+        bad = f->frame;
+        bad.inputs[LIMPID_INPUT_RADIANCE].format = VK_FORMAT_R32G32B32A32_SINT;
+        EXPECT_EQ(limpid_record(denoiser, commands, &bad), LIMPID_ERROR_INVALID_ARGUMENT);
+        EXPECT_THAT(limpid_last_error(), HasSubstr("'radiance' is of VkFormat"));
     });
     limpid_host_frame host = {sizeof host};
     EXPECT_EQ(limpid_denoise_host(denoiser, &host), LIMPID_ERROR_INVALID_ARGUMENT);

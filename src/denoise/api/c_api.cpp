@@ -16,11 +16,25 @@ namespace {
 constexpr float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 constexpr float perspective[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1f, 0};
 
-/// Throws Unsupported if images of this size are too large for the device.
+uint64_t largestBuffer(const gpu::Device& device) {
+    uint64_t largest = device.maxBufferBytes();
+    for (const auto& [name, value] : device.info().limits)
+        if (name == "maxStorageBufferRange") largest = std::min(largest, value);
+    return largest;
+}
+
+/// Throws Unsupported if images of this size are too large for the device, or the buffers that hold some of
+/// them.
 void checkSize(const gpu::Device& device, const limpid_denoiser_desc& desc) {
-    if (std::max(desc.width, desc.height) <= device.maxImageSide()) return;
-    throw gpu::Unsupported(formatText("images of {} x {} pixels: {} has at most {} a side", desc.width,
-                                      desc.height, device.info().name, device.maxImageSide()));
+    constexpr uint64_t widest = 8;  // bytes a pixel of surfaces, and of light in halves
+    const auto fail = [&](uint64_t most, const char* unit) {
+        throw gpu::Unsupported(formatText("images of {} x {} pixels: {} has at most {} {}", desc.width,
+                                          desc.height, device.info().name, most, unit));
+    };
+    if (std::max(desc.width, desc.height) > device.maxImageSide()) fail(device.maxImageSide(), "a side");
+    const uint64_t most = largestBuffer(device) / widest;
+    if (gpu::filterBacking(device) == gpu::Backing::Buffer && uint64_t{desc.width} * desc.height > most)
+        fail(most, "in a buffer");
 }
 
 }  // namespace

@@ -16,6 +16,26 @@ std::vector<uint32_t> toUnsigned(const std::vector<float>& pixels) {
     return result;
 }
 
+/// Returns how many components an input has at least: those that it cannot do without.
+uint32_t fewestOfInput(const limpid_denoiser_desc& desc, size_t input) {
+    switch (input) {
+        case LIMPID_INPUT_RADIANCE:
+        case LIMPID_INPUT_SPECULAR:
+        case LIMPID_INPUT_EMISSION:
+        case LIMPID_INPUT_ALBEDO:
+        case LIMPID_INPUT_ALBEDO_SPECULAR:
+            return desc.method == LIMPID_METHOD_VISIBILITY ? 1 : 3;
+        case LIMPID_INPUT_NORMAL:
+        case LIMPID_INPUT_PREVIOUS_NORMAL:
+            return desc.normal_encoding >= LIMPID_NORMAL_OCTAHEDRAL_SIGNED ? 2 : 3;
+        case LIMPID_INPUT_MOTION:
+        case LIMPID_INPUT_REFLECTION_MOTION:
+            return desc.motion_depth == LIMPID_MOTION_DISTANCE ? 3 : 2;
+        default:
+            return 1;
+    }
+}
+
 IngestImages uploadInputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
                           const limpid_host_frame& frame) {
     const gpu::Extent extent{desc.width, desc.height};
@@ -24,8 +44,8 @@ IngestImages uploadInputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& de
         if (!frame.inputs[input].data) continue;
         gpu::ImageHandle& handle = imageOf(images, input);
         const std::string name = std::string("input/") + inputName(input);
-        const std::vector<float> pixels =
-            readPixels(frame.inputs[input], desc.width, desc.height, inputName(input));
+        const std::vector<float> pixels = readPixels(frame.inputs[input], desc.width, desc.height,
+                                                     inputName(input), fewestOfInput(desc, input));
         const bool isId = input == LIMPID_INPUT_ID;
         handle = graph.transient(name, isId ? gpu::Format::RGBA32Uint : gpu::Format::RGBA32Float, extent);
         if (isId)
@@ -71,6 +91,7 @@ extern "C" limpid_result limpid_denoise_host(limpid_denoiser* denoiser, const li
                                             i < std::size(outputNames) ? outputNames[i] : "of this number"));
         d.graph.execute(*d.device);
         d.finish();
+        d.device->waitIdle();  // downloads wait, too, but there may be none
         for (size_t i = 0; i < std::size(made); ++i) {
             if (!wanted[i].data) continue;
             writePixels(wanted[i], d.graph.downloadFloat(*d.device, made[i]), d.desc.width, d.desc.height,

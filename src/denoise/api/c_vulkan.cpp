@@ -138,6 +138,13 @@ bool isUnsigned(VkFormat format) {
     }
 }
 
+/// Vulkan numbers a format of signed integers directly after that of unsigned ones. S8_UINT has no such
+/// format.
+bool isSigned(VkFormat format) {
+    const auto before = static_cast<VkFormat>(format - 1);
+    return before != VK_FORMAT_S8_UINT && isUnsigned(before);
+}
+
 bool hasStencilBesideDepth(VkFormat format) {
     return format == VK_FORMAT_D16_UNORM_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT ||
            format == VK_FORMAT_D32_SFLOAT_S8_UINT;
@@ -148,7 +155,7 @@ void checkFormat(size_t input, VkFormat format) {
     if (format == VK_FORMAT_UNDEFINED)
         throw UsageError(formatText("the format of the input '{}' is not set", inputName(input)));
     const bool isId = input == LIMPID_INPUT_ID;
-    if (hasStencilBesideDepth(format) || isUnsigned(format) == isId) return;
+    if (hasStencilBesideDepth(format) || (isUnsigned(format) == isId && !isSigned(format))) return;
     throw UsageError(formatText("the input '{}' is of VkFormat {}: it must hold {}", inputName(input),
                                 static_cast<int>(format),
                                 isId ? "unsigned integers" : "floats or normalised numbers"));
@@ -182,8 +189,14 @@ gpu::Format outputFormat(VkFormat format, const char* name) {
                    name, static_cast<int>(format)));
 }
 
-/// Throws UsageError if output `i` has the image of an earlier one: the outputs are written all at once.
+/// Throws UsageError if output `i` has the image of an earlier one, since the outputs are written all at
+/// once, or of an input, which passes sample in another layout and may read again after the output is
+/// written.
 void checkDistinct(const limpid_vulkan_frame& frame, size_t i) {
+    for (size_t input = 0; input < LIMPID_INPUT_MAX; ++input)
+        if (frame.inputs[input].image == frame.outputs[i].image)
+            throw UsageError(formatText("the input '{}' and the output '{}' have the same image",
+                                        inputName(input), outputNames[i]));
     for (size_t other = 0; other < i; ++other)
         if (frame.outputs[other].image == frame.outputs[i].image)
             throw UsageError(formatText("the outputs '{}' and '{}' have the same image", outputNames[other],

@@ -44,16 +44,22 @@ Matrix multiply(const Matrix& a, const Matrix& b) {
     return result;
 }
 
+/// Throws UsageError.
+[[noreturn]] void fail(const std::string& name, const char* fault) {
+    throw UsageError(formatText("the matrix of the camera '{}' {}", name, fault));
+}
+
 /// Inverts by Gaussian elimination with row pivots. Throws UsageError with the matrix's name.
 Matrix inverse(Matrix m, const std::string& name) {
+    constexpr const char* fault = "is singular, or not finite";
+    if (!std::ranges::all_of(m, [](double element) { return std::isfinite(element); })) fail(name, fault);
     Matrix result{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     for (size_t column = 0; column < 4; ++column) {
         size_t pivot = column;
         for (size_t row = column + 1; row < 4; ++row)
             if (std::abs(m[4 * column + row]) > std::abs(m[4 * column + pivot])) pivot = row;
         const double scale = m[4 * column + pivot];
-        if (!(std::abs(scale) > 0.0) || !std::isfinite(scale))
-            throw UsageError(formatText("the matrix of the camera '{}' is singular, or not finite", name));
+        if (!(std::abs(scale) > 0.0) || !std::isfinite(scale)) fail(name, fault);
         for (size_t c = 0; c < 4; ++c) {
             std::swap(m[4 * c + column], m[4 * c + pivot]);
             std::swap(result[4 * c + column], result[4 * c + pivot]);
@@ -70,6 +76,44 @@ Matrix inverse(Matrix m, const std::string& name) {
         }
     }
     return result;
+}
+
+/// How far matrices may deviate from their ideal: much more than floats round, much less than is meant.
+constexpr double tolerance = 1e-3;
+
+/// Distances in view space count as distances in the world, so it must not be scaled or sheared.
+void checkRigid(const Matrix& view, const std::string& name) {
+    const Matrix expected{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, view[12], view[13], view[14], 1};
+    bool rigid = true;
+    for (size_t column = 0; column < 3; ++column) {
+        for (size_t other = 0; other < 3; ++other) {
+            double product = 0;
+            for (size_t row = 0; row < 3; ++row) product += view[4 * column + row] * view[4 * other + row];
+            rigid = rigid && std::abs(product - expected[4 * column + other]) <= tolerance;
+        }
+    }
+    for (size_t column = 0; column < 4; ++column)
+        rigid = rigid && std::abs(view[4 * column + 3] - expected[4 * column + 3]) <= tolerance;
+    if (!rigid) fail(name, "is not rigid: it scales, or its axes are not perpendicular");
+}
+
+/// Depth and w must depend on the view-space z alone, and parallel rays run along the view axis. An
+/// orthographic volume on both sides of the eye may be seen along either direction, since depth may be
+/// reversed or not.
+void checkProjection(const Matrix& p, const std::string& name) {
+    const auto vanish = [](double a, double b, double scale) {
+        return std::abs(a) + std::abs(b) <= tolerance * scale;
+    };
+    const bool orthographic = p[11] == 0.0;
+    if (!vanish(p[2], p[6], std::abs(p[10]) + std::abs(p[14])) ||
+        !vanish(p[3], p[7], std::abs(p[11]) + std::abs(p[15])) ||
+        (orthographic && !vanish(p[8], p[9], std::abs(p[10]))))
+        fail(name, "is oblique: planes of equal depth must be perpendicular to the view axis");
+    if (!orthographic) return;
+    const double first = -p[14] / p[10], last = (p[15] - p[14]) / p[10];  // z where depth is 0 and 1
+    const double behind = std::min(std::abs(first), std::abs(last));
+    if (first * last < 0.0 && behind > tolerance * std::abs(last - first))
+        fail(name, "is orthographic and begins behind the eye: move the eye back instead");
 }
 
 Vector unproject(const Matrix& fromClip, double x, double y) {
@@ -121,8 +165,12 @@ vec4 rowOf(const Matrix& m, size_t row, double sign = 1.0) {
 CameraMatrices cameraFromMatrices(const float (&view)[16], const float (&projection)[16], bool yUp,
                                   uint32_t height, const char* prefix) {
     const Matrix v = toDouble(view), p = toDouble(projection), toClip = multiply(p, v);
-    const Matrix toWorld = inverse(v, std::string(prefix) + "view");
-    const Matrix fromClip = inverse(toClip, std::string(prefix) + "projection");
+    const std::string viewName = std::string(prefix) + "view";
+    const std::string projectionName = std::string(prefix) + "projection";
+    const Matrix toWorld = inverse(v, viewName);
+    checkRigid(v, viewName);
+    const Matrix fromClip = inverse(toClip, projectionName);
+    checkProjection(p, projectionName);
     const double down = yUp ? -1.0 : 1.0;  // clip-space y of the lower edge
     const bool orthographic = p[11] == 0.0;
     CameraMatrices result;

@@ -19,8 +19,8 @@ struct CameraMatrices {
 };
 
 /// `view` maps world to view space and is rigid; `projection` maps to clip space and is perspective or
-/// orthographic, possibly off-centre. Throws UsageError if a matrix is singular or contains NaN, naming it
-/// with `prefix` before "view" or "projection".
+/// orthographic, possibly off-centre. Throws UsageError if a matrix is singular, contains NaN or is not of
+/// this kind (limpid_camera), naming it with `prefix` before "view" or "projection".
 CameraMatrices cameraFromMatrices(const float (&view)[16], const float (&projection)[16], bool yUp,
                                   uint32_t height, const char* prefix = "");
 

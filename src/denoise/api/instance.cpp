@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 
 #include "base/error.h"
@@ -50,6 +51,12 @@ void checkEnum(const char* what, const Enum& given, int last) {
 
 void checkMethod(const limpid_method& method) {
     checkEnum("method", method, static_cast<int>(methods().size()) - 1);
+}
+
+void checkJitter(const limpid_camera& camera) {
+    for (const float offset : camera.jitter)
+        if (!(std::abs(offset) <= 0.5f))
+            throw UsageError(formatText("jitter: {} is not from -0.5 to 0.5 pixels", offset));
 }
 
 /// Its `kind` and `reflections` follow from the frame's images.
@@ -121,6 +128,8 @@ void check(const limpid_denoiser_desc& desc) {
     if (desc.width == 0 || desc.height == 0 || desc.width > 32768 || desc.height > 32768)
         throw UsageError(
             formatText("images of {} x {} pixels: each side has 1 to 32768", desc.width, desc.height));
+    if (!(desc.far_depth >= 0.0f))
+        throw UsageError(formatText("far_depth: {} is negative or not a number", desc.far_depth));
     if (desc.frames_in_flight > 8)
         throw UsageError(formatText("frames_in_flight: at most 8, not {}", desc.frames_in_flight));
 }
@@ -131,6 +140,7 @@ bool readsHistory(const limpid_denoiser_desc& desc, const FilterSettings& settin
 }
 
 IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera& camera, bool hasPrevious) {
+    checkJitter(camera);
     const bool yUp = desc.clip_y == LIMPID_CLIP_Y_UP;
     const CameraMatrices now = cameraFromMatrices(camera.view, camera.projection, yUp, desc.height);
     const CameraMatrices before = hasPrevious

@@ -25,16 +25,16 @@ const std::vector<InstanceParameter>& parametersOf(limpid_method method);
 void setParameter(FilterSettings& settings, limpid_method method, std::string_view name, double value);
 double parameter(const FilterSettings& settings, limpid_method method, std::string_view name);
 
-/// Throws UsageError if an enumeration's value, the number of signals or of frames in flight is invalid, or a
-/// side does not have 1 to 32768 pixels.
+/// Throws UsageError if an enumeration's value, the number of signals or of frames in flight or the far depth
+/// is invalid, or a side does not have 1 to 32768 pixels.
 void check(const limpid_denoiser_desc& desc);
 
 /// Whether frames depend on earlier ones: the method keeps a history, or anti-aliasing does.
 bool readsHistory(const limpid_denoiser_desc& desc, const FilterSettings& settings);
 
 /// Returns the ingest pass's parameters that follow from conventions and cameras. `hasPrevious`: there is a
-/// previous frame; without, the camera's previous matrices are not read. Throws UsageError naming a matrix
-/// that is singular or not finite.
+/// previous frame; without, the camera's previous matrices are not read. Throws UsageError if the jitter or a
+/// matrix is not as limpid_camera says.
 IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera& camera, bool hasPrevious);
 
 /// Records a frame; needs no device. `signalsToo`: radiance and specular are wanted. `target`: the caller's

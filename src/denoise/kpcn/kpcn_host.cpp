@@ -71,8 +71,9 @@ class Faces {
         }
     }
     /// For each x in [begin, end): excludes the tap, by setting logits[x] to noLogit, if the normals of the
-    /// pixels `a` + x and `b` + x differ too much.
+    /// pixels `a` + x and `b` + x differ too much. A pixel never excludes itself (kpcn_softmax.glsl).
     void mask(size_t a, size_t b, size_t begin, size_t end, float* logits) const {
+        if (a == b) return;
         const float *p = components_[0].data(), *q = components_[1].data(), *r = components_[2].data(),
                     *s = components_[3].data();
         for (size_t x = begin; x < end; ++x) {

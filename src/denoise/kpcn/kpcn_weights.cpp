@@ -18,6 +18,8 @@ using nlohmann::json;
 constexpr uint32_t maxHidden = 64, maxChannels = 1024, widestKernel = 31;
 constexpr float largestHalf = 65504.0f;
 constexpr float minFacing = -2.0f;
+/// Equal normals must pass: rounded to 8 bits, their product with themselves may be as small as 0.986.
+constexpr float maxFacing = 0.98f;
 
 struct Shape {
     uint32_t hidden, channels, width;
@@ -85,8 +87,8 @@ class Reader {
     float readFacing(const json& shape) const {
         if (!shape.contains("facing")) return KpcnWeights{}.facing;
         const auto facing = finiteFloat(shape["facing"]);
-        if (!facing || !(*facing >= minFacing && *facing <= 1.0f))
-            fail(formatText("its metadata limpid.shape has no 'facing' from {} to 1", minFacing));
+        if (!facing || !(*facing >= minFacing && *facing <= maxFacing))
+            fail(formatText("its metadata limpid.shape has no 'facing' from {} to {}", minFacing, maxFacing));
         return *facing;
     }
 

@@ -75,6 +75,9 @@ TEST(KpcnWeights, TheNetworkSaysWhatItsKernelsTakeIn) {
     file.metadata["limpid.shape"] = R"({"hidden":1,"channels":2,"width":3,"facing":-2})";
     neural::writeTensorFile(folder / "w.safetensors", file);
     EXPECT_EQ(readKpcnWeights(folder / "w.safetensors").facing, -2.0f);
+    file.metadata["limpid.shape"] = R"({"hidden":1,"channels":2,"width":3,"facing":0.98})";
+    neural::writeTensorFile(folder / "w.safetensors", file);
+    EXPECT_EQ(readKpcnWeights(folder / "w.safetensors").facing, 0.98f);
     file.metadata["limpid.shape"] = R"({"hidden":1,"channels":2,"width":3,"diffuse_input":"linear"})";
     neural::writeTensorFile(folder / "w.safetensors", file);
     EXPECT_FALSE(readKpcnWeights(folder / "w.safetensors").logarithmicDiffuse);
@@ -101,7 +104,7 @@ TEST(KpcnWeights, WhatIsWrongIsRefusedAndNamed) {
     EXPECT_THAT(shape(R"({"hidden":1,"channels":2,"width":4})"), HasSubstr("even"));
     EXPECT_THAT(shape(R"({"hidden":1,"channels":2,"width":1e3})"), HasSubstr("'width'"));
     EXPECT_THAT(shape(R"({"hidden":1,"channels":2,"width":99})"), HasSubstr("'width'"));
-    for (const char* facing : {"-2.1", "1.5", "1e300", "\"any\"", "null"})
+    for (const char* facing : {"-2.1", "0.99", "1.5", "1e300", "\"any\"", "null"})
         EXPECT_THAT(shape(fmt::format(R"({{"hidden":1,"channels":2,"width":3,"facing":{}}})", facing)),
                     HasSubstr("'facing'"));
     for (const char* input : {"\"square\"", "1", "null"})

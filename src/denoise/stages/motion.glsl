@@ -18,6 +18,18 @@ float previousDistance(MotionEncoding encoding, vec3 position) {
     return before.orthographic != 0u ? dot(toPoint, before.forward) : length(toPoint);
 }
 
+/// The distance from the previous eye at which its ray through a pixel (minus one half) meets the tangent plane of a
+/// reflector that stands still; not above 0 if it does not.
+float previousReflector(MotionEncoding encoding, vec3 position, vec3 normal, vec2 pixel, vec2 size) {
+    const CameraParams before = encoding.previousCamera;
+    const vec2 onScreen = pixelOnScreen(pixel, size);
+    const vec3 direction = normalize(viewVector(before, onScreen));
+    const vec3 origin =
+        before.origin + (before.orthographic != 0u ? onScreen.x * before.right + onScreen.y * before.up : vec3(0.0));
+    const float facing = dot(direction, normal);
+    return facing != 0.0 ? dot(position - origin, normal) / facing : 0.0;
+}
+
 /// The motion in pixels of a point, or of a direction (w 0: the sky), that stands still and that the jittered ray of
 /// `pixel` sees; 0 if it was behind the previous eye.
 vec4 motionOfStill(MotionEncoding encoding, vec4 point, vec2 pixel, vec2 size) {
@@ -44,11 +56,18 @@ vec4 motionOfTexel(MotionEncoding encoding, vec4 texel, CameraParams camera, vec
     return isFinite(moved.xyz) ? moved : vec4(0.0);
 }
 
-/// The same for the motion of reflections. All zero says that there is no reflection to follow.
+/// The same for the motion of reflections. All zero says that there is no reflection to follow. Without a third
+/// component (reflectionsAreFlat()), the change of the distance is 0 here.
 vec4 reflectionOfTexel(MotionEncoding encoding, vec4 texel) {
     if (encoding.reflections == MOTION_LAYER) return texel;
+    if (encoding.toDistance == 0.0) texel.z = 0.0;
     const bool valid = encoding.hasPrevious != 0u && texel.xyz != vec3(0.0) && isFinite(texel.xyz);
     return valid ? vec4(texel.xy * encoding.toPixels, texel.z * encoding.toDistance, 1.0) : vec4(0.0);
+}
+
+/// Whether the motion of reflections has no change of the distance, so that it follows from the reflector.
+bool reflectionsAreFlat(MotionEncoding encoding) {
+    return encoding.reflections == MOTION_GIVEN && encoding.toDistance == 0.0;
 }
 
 #endif

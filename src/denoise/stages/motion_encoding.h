@@ -22,7 +22,7 @@ struct MotionEncoding {
     uint hasPrevious;  // 0: there is no previous frame, all motion is invalid. Not read of layers
     vec2 toPixels;     // scales motion to previous minus current position
     float toDistance;  // scales the third component; 0: motion has none, and distances change as of what
-                       // stands still
+                       // stands still, also those of reflectors
     vec2 jitter;       // pixels
     CameraParams previousCamera;
     vec4 previousClipX;  // rows of the previous frame's matrix from world to clip space

@@ -299,8 +299,21 @@ TEST_F(GpuTest, UnusedImagesAreFreed) {
         RecordedFrame frame;
         frame.images.push_back({.name = "a", .key = {"a", 0, rgba, size, size}});
         executor.execute(frame);
-        EXPECT_LE(executor.pooledImages(), 10u);
+        EXPECT_LE(executor.pooledImages(), 3u) << "this frame's, and two that may be in use";
     }
+}
+
+TEST_F(GpuTest, ReleaseKeepsWhatIsNeededOrInUse) {
+    ImagePool pool(device().impl().context, 2);
+    const ImageKey needed{"needed", 0, rgba, 4, 4}, old{"old", 0, rgba, 4, 4}, busy{"busy", 0, rgba, 4, 4},
+        failed{"failed", 0, rgba, 4, 4};
+    for (const ImageKey& key : {needed, old, busy, failed}) pool.acquire(key, "");
+    for (const ImageKey& key : {needed, old, busy}) pool.acquire(key, "").initialised = true;
+    pool.acquire(busy, "").lastFrame = 7;
+    EXPECT_TRUE(pool.release({needed}, 7));
+    EXPECT_TRUE(pool.find(needed) && pool.find(busy));
+    EXPECT_FALSE(pool.find(old) || pool.find(failed));
+    EXPECT_FALSE(pool.release({needed}, 7)) << "nothing is left to free";
 }
 
 TEST_F(GpuTest, DownloadsEveryFormat) {

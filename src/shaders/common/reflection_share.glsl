@@ -7,11 +7,12 @@ const float MAX_REFLECTING_ROUGHNESS = 0.3;
 
 /// The depth of the reflected image behind the surface, as a share of a perfect mirror's: the lobe's dominant
 /// direction leans from the mirrored direction towards the normal by the same share (S. Lagarde and C. de
-/// Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.9). 0: it moves with the surface.
+/// Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.9). 0: it moves with the surface, also
+/// where the roughness is unknown (negative or NaN).
 float reflectionShare(float roughness) {
-    if (!(roughness < MAX_REFLECTING_ROUGHNESS)) return 0.0;
-    const float smoothness = 1.0 - max(roughness, 0.0);
-    return smoothness * (sqrt(smoothness) + max(roughness, 0.0));
+    if (!(roughness >= 0.0 && roughness < MAX_REFLECTING_ROUGHNESS)) return 0.0;
+    const float smoothness = 1.0 - roughness;
+    return smoothness * (sqrt(smoothness) + roughness);
 }
 
 #endif

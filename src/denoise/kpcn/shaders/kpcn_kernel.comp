@@ -9,9 +9,9 @@ layout(set = 0, binding = 3, scalar) readonly buffer lightTexels { vec4 texels[]
 layout(set = 0, binding = 4, rgba32f) uniform writeonly image2D clean;
 layout(set = 0, binding = 5, scalar) readonly buffer faceTexels { uint texels[]; } faces;
 
-void addTap(inout WeightedMean mean, float logit, uint face, ivec2 tap) {
+void addTap(inout WeightedMean mean, float logit, uint face, ivec2 pixel, ivec2 tap) {
     const uint at = pixelTexel(params.region, tap);
-    if (alike(params, face, faces.texels[at])) add(mean, logit, light.texels[at]);
+    if (counts(params, pixel, tap, face, faces.texels[at])) add(mean, logit, light.texels[at]);
 }
 
 void main() {
@@ -28,7 +28,8 @@ void main() {
             const uint face = faces.texels[pixelTexel(params.region, pixel)];
             for (uint k = 0u; k < KPCN_SLAB; ++k) {
                 ivec2 tap;
-                if (kernelTap(params, pixel, tile * KPCN_SLAB + k, tap)) addTap(means[p], sums[p][k / 4u][k % 4u], face, tap);
+                if (kernelTap(params, pixel, tile * KPCN_SLAB + k, tap))
+                    addTap(means[p], sums[p][k / 4u][k % 4u], face, pixel, tap);
             }
         }
     }

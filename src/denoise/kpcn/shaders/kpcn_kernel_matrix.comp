@@ -34,7 +34,7 @@ void main() {
                 if (!kernelTap(params, pixel, tile * KPCN_SLAB + i * 8u + k, tap)) continue;
                 const uint at = pixelTexel(params.region, tap);
                 const float logit = clamp(pair[k % 2u], -MAX_HALF, MAX_HALF);  // infinity would give NaN
-                if (alike(params, face, faces.texels[at])) add(mean, logit, light.texels[at]);
+                if (counts(params, pixel, tap, face, faces.texels[at])) add(mean, logit, light.texels[at]);
             }
         }
     }

@@ -37,7 +37,9 @@ bool kernelTap(KpcnLayerParams params, ivec2 pixel, uint channel, out ivec2 tap)
     return channel < width * width && inPicture(params.region, tap);
 }
 
-/// Returns whether two pixels have similar normals, or both none. `face` and `other` are packed by kpcn_features.comp.
-bool alike(KpcnLayerParams params, uint face, uint other) {
-    return dot(unpackSnorm4x8(face), unpackSnorm4x8(other)) >= params.facing;
+/// Returns whether the pixel `tap` belongs to the mean of `pixel`: both have similar normals, or none. `face` and
+/// `other` are theirs, packed by kpcn_features.comp. A pixel always counts itself: packed normals are not exactly of
+/// length 1, and a mean of nothing would be NaN.
+bool counts(KpcnLayerParams params, ivec2 pixel, ivec2 tap, uint face, uint other) {
+    return tap == pixel || dot(unpackSnorm4x8(face), unpackSnorm4x8(other)) >= params.facing;
 }

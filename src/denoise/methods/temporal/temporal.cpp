@@ -1,5 +1,6 @@
 #include "denoise/methods/temporal/temporal.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "denoise/methods/methods.h"
@@ -28,7 +29,9 @@ TemporalParams makeParams(gpu::Extent extent, const DenoiserInput& input, const 
     params.greyRestart = settings.greyRestart;
     params.greyMisses = settings.greyMisses;
     params.grey = settings.grey;
-    params.maxHistory = settings.maxHistory > 0.0f ? settings.maxHistory : std::numeric_limits<float>::max();
+    // A history of less than one frame would weigh the new sample more than once, and the mean would diverge.
+    params.maxHistory =
+        settings.maxHistory > 0.0f ? std::max(settings.maxHistory, 1.0f) : std::numeric_limits<float>::max();
     return params;
 }
 
@@ -72,7 +75,7 @@ const ParamTable<TemporalSettings>& temporal::params() {
             .slider(1e-3, 1, SliderScale::Logarithmic);
         t.add("max_history", &S::maxHistory, 0.0, 1e6, "frames",
               "Maximum number of frames that the history counts for; higher is smoother, lower follows "
-              "changing light faster; 0 is no limit")
+              "changing light faster; below 1 counts as 1; 0 is no limit")
             .slider(0, 1000, SliderScale::Logarithmic, 1);
         t.add("grey_restart", &S::greyRestart,
               "Start pixels without history from a grey of weight 1; softens the black of new pixels");

@@ -65,18 +65,6 @@ bool imageOf(Point own, vec3 view, float hit, float curvature, float share, out 
     return inverse >= 0.0;
 }
 
-/// The distance from the previous eye at which its ray through a pixel meets the surface's tangent plane; not above 0
-/// if it does not.
-float previousReflector(Point own, vec2 pixel) {
-    const CameraParams before = params.motion.previousCamera;
-    const vec2 onScreen = pixelOnScreen(pixel, vec2(params.width, params.height));
-    const vec3 direction = normalize(viewVector(before, onScreen));
-    const vec3 origin =
-        before.origin + (before.orthographic != 0u ? onScreen.x * before.right + onScreen.y * before.up : vec3(0.0));
-    const float facing = dot(direction, own.normal);
-    return facing != 0.0 ? dot(own.position - origin, own.normal) / facing : 0.0;
-}
-
 vec4 reflectionMotionAt(ivec2 at) {
     const Point own = pointAt(at);
     const float hit = LOAD_LAYER(hitDistanceIn, at).r, share = reflectionShare(LOAD_LAYER(roughnessIn, at).r);
@@ -96,7 +84,8 @@ vec4 reflectionMotionAt(ivec2 at) {
     const vec4 still = motionOfStill(params.motion, vec4(own.position, 1.0), vec2(at), size);
     const vec4 moved = motionOfStill(params.motion, image, vec2(at), size);
     if (moved.w == 0.0 || still.w == 0.0 || length(ownMotion.xy - still.xy) > STILL) return vec4(0.0);
-    const float before = previousReflector(own, vec2(at) + params.motion.jitter + moved.xy);
+    const float before = previousReflector(params.motion, own.position, own.normal,
+                                           vec2(at) + params.motion.jitter + moved.xy, size);
     return before > 0.0 ? vec4(moved.xy, before - distance, 1.0) : vec4(0.0);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 
 #include "base/error.h"
 #include "base/text/format.h"
@@ -69,7 +70,7 @@ size_t uploadsTogether(std::span<const RecordedUpload> uploads) {
 FrameExecutor::FrameExecutor(std::shared_ptr<const Context> context, std::shared_ptr<PipelineCache> pipelines,
                              const GraphOptions& options)
     : context_(std::move(context)),
-      images_(context_),
+      images_(context_, options.framesInFlight),
       pipelines_(std::move(pipelines)),
       prefix_(options.prefix) {
     for (uint32_t i = 0; i < options.framesInFlight; ++i) slots_.emplace_back(context_, i, options);
@@ -129,18 +130,36 @@ void FrameExecutor::recordFrame(const RecordedFrame& frame, FrameSlot& slot, con
 }
 
 void FrameExecutor::finish(const RecordedFrame& frame) {
-    ++submitted_;
     for (size_t i = 0; i < frameImages_.size(); ++i) {
         ImagePool::Entry* const entry = frameImages_[i].pooled;
         if (!entry) continue;
         entry->initialised = true;
+        entry->lastFrame = submitted_;
         if (frame.images[i].clear && !frame.images[i].written) entry->zero = true;
         if (frame.images[i].sharesWith) entry->zero = false;
     }
+    ++submitted_;
 }
 
-/// Creates the images that are missing.
+/// Creates the images that are missing. If memory runs out, what earlier frames have left, such as images of
+/// another size, may be in the way: frees those that no unfinished frame uses, and tries once more.
 void FrameExecutor::acquireImages(const RecordedFrame& frame) {
+    try {
+        return lookUpImages(frame);
+    } catch (const OutOfMemory&) {
+        uint64_t finished = submitted_;
+        if (context_->submits())
+            context_->waitIdle();
+        else  // the caller has waited for the frame whose slot is used again, and those before
+            finished -= std::min<uint64_t>(submitted_, slots_.size() - 1);
+        std::set<ImageKey> needed;
+        for (const RecordedImage& recorded : frame.images) needed.insert(recorded.key);
+        if (!images_.release(needed, finished)) throw;
+    }
+    lookUpImages(frame);
+}
+
+void FrameExecutor::lookUpImages(const RecordedFrame& frame) {
     frameImages_.clear();
     for (const RecordedImage& recorded : frame.images) {
         if (recorded.sharesWith) {
@@ -149,7 +168,7 @@ void FrameExecutor::acquireImages(const RecordedFrame& frame) {
             frameImages_.push_back({nullptr, reinterpret_cast<VkImageView>(recorded.foreign.view),
                                     layoutDuring(recorded), nullptr});
         } else {
-            ImagePool::Entry& entry = images_.acquire(recorded.key, prefix_, submitted_);
+            ImagePool::Entry& entry = images_.acquire(recorded.key, prefix_);
             frameImages_.push_back(
                 {&entry, entry.image.view.get(), VK_IMAGE_LAYOUT_GENERAL, entry.image.buffer.get()});
         }
@@ -263,11 +282,12 @@ void FrameExecutor::clear(const RecordedFrame& frame, VkCommandBuffer commands) 
     std::vector<ImagePool::Entry*> entries, fresh;
     for (const RecordedImage& recorded : frame.images)
         if (recorded.role != RecordedImage::Role::Foreign)
-            entries.push_back(&images_.acquire(recorded.key, prefix_, submitted_));
+            entries.push_back(&images_.acquire(recorded.key, prefix_));
     std::vector<VkImageMemoryBarrier2> barriers;
     for (ImagePool::Entry* const entry : entries) {
         if (entry->initialised) continue;
         entry->initialised = true;
+        entry->lastFrame = submitted_;  // the commands run before the next frame
         entry->zero = true;
         fresh.push_back(entry);
         if (entry->image.buffer) continue;

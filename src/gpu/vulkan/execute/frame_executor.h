@@ -65,6 +65,7 @@ class FrameExecutor {
     void releaseForeign(const RecordedFrame& frame, VkCommandBuffer commands) const;
     void finish(const RecordedFrame& frame);
     void acquireImages(const RecordedFrame& frame);
+    void lookUpImages(const RecordedFrame& frame);
     void bindPasses(const RecordedFrame& frame, FrameSlot& slot);
     void prepareImages(const RecordedFrame& frame, VkCommandBuffer commands, const Scope& scope);
     void clearHistories(const RecordedFrame& frame, VkCommandBuffer commands);
