@@ -88,8 +88,11 @@ void Streamer::start(ClientId id, bool vp9) {
         if (found == clients_.end()) return;
         ++found->second.starts;
         found->second.vp9 = vp9;
-        // A client that starts again, say with the other codec, has nothing.
+        // A client that starts again, say with the other codec, has nothing, and may never acknowledge what
+        // was sent before.
+        found->second.sent.clear();
         for (Lane& lane : found->second.lanes) {
+            lane.inFlight = 0;
             lane.synced = lane.still = false;
             lane.joins = true;
             lane.waiting.reset();

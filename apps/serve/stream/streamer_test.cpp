@@ -82,6 +82,24 @@ TEST_F(StreamerTest, HasTwoInFlightAndSendsTheNewest) {
     EXPECT_FALSE(next(id, 0.1)) << "one number counts twice";
 }
 
+/// A decoder may fail, and nobody acknowledges what it was given.
+TEST_F(StreamerTest, AClientThatStartsAgainHasNothingInFlight) {
+    const auto id = client(false);
+    for (int i = 0; i < 2; ++i) {
+        publish();
+        ASSERT_TRUE(next(id));
+    }
+    streamer.start(id, false);
+    publish();
+    const auto first = next(id);
+    publish();
+    ASSERT_TRUE(first && next(id));
+    publish();
+    EXPECT_FALSE(next(id, 0.1)) << "a third one is in flight";
+    streamer.received(id, first->header.frame);
+    EXPECT_TRUE(next(id));
+}
+
 /// Pictures come faster than they are encoded.
 TEST_F(StreamerTest, ASlowEncoderHoldsNobodyUpAndSkipsStalePictures) {
     constexpr int pictures = 40;
