@@ -83,6 +83,9 @@ class DrivenViewer {
     ~DrivenViewer() {
         kill("view.pid");
         kill("xvfb.pid");
+        // The shell around the program writes its exit code: not while the next viewer starts in this folder.
+        for (int i = 0; i < 200 && get("code").empty(); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     DrivenViewer(const DrivenViewer&) = delete;
     DrivenViewer& operator=(const DrivenViewer&) = delete;
