@@ -222,9 +222,11 @@ void inspectCooperativeMatrices(const InstanceFunctions& vk, PhysicalDevice& dev
     VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
     core.pNext = &subgroup;
     vk.GetPhysicalDeviceProperties2(device.handle, &core);
-    // Shaders with cooperative matrices declare the Vulkan memory model.
+    // Shaders with cooperative matrices declare the Vulkan memory model. Where it is enabled, the atomics of
+    // other shaders need device scope.
     if (!available.cooperativeMatrix.cooperativeMatrix || !available.v12.shaderFloat16 ||
-        !available.v12.vulkanMemoryModel || subgroup.subgroupSize != 32)
+        !available.v12.vulkanMemoryModel || !available.v12.vulkanMemoryModelDeviceScope ||
+        subgroup.subgroupSize != 32)
         return;
     uint32_t count = 0;
     LIMPID_VK(vk.GetPhysicalDeviceCooperativeMatrixPropertiesNV(device.handle, &count, nullptr));
@@ -327,7 +329,7 @@ void enableFeatures(const InstanceFunctions& vk, const PhysicalDevice& device, F
     if (device.info.cooperativeMatrices) {
         wanted.linkCooperativeMatrix();
         wanted.cooperativeMatrix.cooperativeMatrix = VK_TRUE;
-        wanted.v12.vulkanMemoryModel = VK_TRUE;
+        wanted.v12.vulkanMemoryModel = wanted.v12.vulkanMemoryModelDeviceScope = VK_TRUE;
     }
     if (!device.info.rayTracing) return;
     wanted.linkRayTracing();
