@@ -14,7 +14,7 @@
 
 namespace limpid::serve {
 
-/// An edit has all lights of a scene, some 250 bytes each.
+/// Of one message. An edit of a light repeats all lights of the scene, about 250 bytes each.
 inline constexpr size_t maxTextBytes = size_t{1} << 20;
 /// Of the viewport: a renderer needs hundreds of bytes for each. 5120x2880 is allowed.
 inline constexpr uint64_t maxPixels = uint64_t{1} << 24;

@@ -106,7 +106,7 @@ bool RenderLoop::renderWhatIsDue() {
     } catch (const gpu::DeviceLost&) {
         throw;
     } catch (const Error& fault) {
-        // Scripts want the error, and so does who waits for a picture on leaving.
+        // With a given number of frames, and for a picture that is saved on leaving, nobody could try again.
         if (settings_.quitAfter > 0 || ending_) throw;
         return goBack(fault.what());
     }
@@ -160,7 +160,7 @@ bool RenderLoop::goBack(const std::string& fault) {
         hasFailed_ = true;
         return false;
     }
-    // Not the viewport: who shows the picture would ask for it again. Nor the camera, nor the lights.
+    // The viewport stays: the window would set it again at once. So do the camera and the lights.
     state_.render = before->render;
     state_.pipelineBefore = before->pipelineBefore;
     state_.parts = before->parts;
