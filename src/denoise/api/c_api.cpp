@@ -16,13 +16,6 @@ namespace {
 constexpr float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 constexpr float perspective[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1f, 0};
 
-uint64_t largestBuffer(const gpu::Device& device) {
-    uint64_t largest = device.maxBufferBytes();
-    for (const auto& [name, value] : device.info().limits)
-        if (name == "maxStorageBufferRange") largest = std::min(largest, value);
-    return largest;
-}
-
 /// Throws Unsupported if images of this size are too large for the device, or the buffers that hold some of
 /// them.
 void checkSize(const gpu::Device& device, const limpid_denoiser_desc& desc) {
@@ -32,7 +25,7 @@ void checkSize(const gpu::Device& device, const limpid_denoiser_desc& desc) {
                                           desc.height, device.info().name, most, unit));
     };
     if (std::max(desc.width, desc.height) > device.maxImageSide()) fail(device.maxImageSide(), "a side");
-    const uint64_t most = largestBuffer(device) / widest;
+    const uint64_t most = device.maxStorageBufferBytes() / widest;
     if (gpu::filterBacking(device) == gpu::Backing::Buffer && uint64_t{desc.width} * desc.height > most)
         fail(most, "in a buffer");
 }

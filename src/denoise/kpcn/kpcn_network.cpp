@@ -35,14 +35,6 @@ void pack(const KpcnLayer& layer, bool hidden, std::vector<float>& packed) {
     if (hidden) place(layer.inputs, centre, layer.outputs) = 1.0f;
 }
 
-uint64_t largestBuffer(const gpu::Device& device) {
-    uint64_t max = device.maxBufferBytes();
-    for (const auto& [name, value] : device.info().limits) {
-        if (name == "maxStorageBufferRange") max = std::min(max, value);
-    }
-    return max;
-}
-
 }  // namespace
 
 std::string_view toString(KpcnPrecision precision) {
@@ -71,7 +63,7 @@ KpcnNetwork::KpcnNetwork(gpu::Device& device, const KpcnWeights& weights, KpcnPr
       slabs_(KPCN_INPUT_SLABS),
       facing_(weights.facing),
       logarithmicDiffuse_(weights.logarithmicDiffuse),
-      maxBytes_(largestBuffer(device)) {
+      maxBytes_(device.maxStorageBufferBytes()) {
     std::vector<float> packed;
     for (size_t side = 0; side < 2; ++side) {
         for (const KpcnLayer& layer : weights.sides[side]) {

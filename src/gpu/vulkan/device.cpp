@@ -1,5 +1,7 @@
 #include "gpu/vulkan/device.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/text/format.h"
 #include "gpu/vulkan/device_impl.h"
@@ -54,6 +56,10 @@ uint64_t Device::maxTexelBufferElements() const {
 
 uint64_t Device::maxBufferBytes() const {
     return impl_->context->maxBufferBytes();
+}
+
+uint64_t Device::maxStorageBufferBytes() const {
+    return std::min<uint64_t>(maxBufferBytes(), impl_->context->limits().maxStorageBufferRange);
 }
 
 Buffer Device::createTexelBuffer(const std::string& name, Format format, std::span<const std::byte> data) {

@@ -113,7 +113,8 @@ class Device {
     uint64_t allocatedBytes() const;
     uint32_t maxImageSide() const;  ///< maxImageDimension2D
     uint64_t maxTexelBufferElements() const;
-    uint64_t maxBufferBytes() const;  ///< the smaller of maxBufferSize and maxMemoryAllocationSize
+    uint64_t maxBufferBytes() const;         ///< the smaller of maxBufferSize and maxMemoryAllocationSize
+    uint64_t maxStorageBufferBytes() const;  ///< the same, and at most maxStorageBufferRange
 
     /// Creates a device-local storage texel buffer containing `data` (at least one texel; empty data gives
     /// one zero texel). Throws Error naming the limit if the data exceeds maxTexelBufferElements or the
