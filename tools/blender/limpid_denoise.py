@@ -124,6 +124,23 @@ def changed(settings):
             setattr(owner, name, value)
 
 
+def action_curves(action):
+    """Returns the F-curves of an action, which since Blender 5 are in its layers."""
+    if hasattr(action, "fcurves"):
+        return list(action.fcurves)
+    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags
+            for curve in bag.fcurves]
+
+
+def is_seed_animated(scene):
+    """True if a driver or keyframes change Cycles' seed already."""
+    data = scene.animation_data
+    if data is None:
+        return False
+    curves = list(data.drivers) + (action_curves(data.action) if data.action else [])
+    return any(curve.data_path == "cycles.seed" for curve in curves)
+
+
 def render_settings(scene, frames, path):
     """Returns the settings with which frames are rendered for Limpid, for changed()."""
     render, image = scene.render, scene.render.image_settings
@@ -131,7 +148,10 @@ def render_settings(scene, frames, path):
                 (render, "filepath", path), (render, "use_file_extension", True),
                 (render, "use_compositing", False), (render, "use_sequencer", False), (render, "use_multiview", False),
                 (render, "use_motion_blur", False),  # with it, Cycles writes no motion vectors
+                (render, "use_overwrite", True), (render, "use_placeholder", False),
                 (scene.cycles, "use_denoising", False)]
+    if not is_seed_animated(scene):  # the same noise in all frames would not average out
+        settings.append((scene.cycles, "use_animated_seed", True))
     if hasattr(image, "media_type"):  # Blender 5
         settings.append((image, "media_type", "MULTI_LAYER_IMAGE"))
     return settings + [(image, "file_format", "OPEN_EXR_MULTILAYER"), (image, "color_mode", "RGBA"),
@@ -142,9 +162,18 @@ def frame_file(folder, name, frame):
     return os.path.join(folder, f"{name}.{frame:04d}.exr")
 
 
+def remove_frames(folder, name, frames):
+    """Deletes the frames of an earlier run, so that they are not taken for new ones."""
+    for frame in frames:
+        path = frame_file(folder, name, frame)
+        if os.path.isfile(path):
+            os.remove(path)
+
+
 def render_frames(scene, frames, folder):
     """Renders noisy.####.exr. Raises Problem if a file is missing afterwards."""
     path = os.path.join(folder, "noisy.####.exr")
+    remove_frames(folder, "noisy", frames)
     current, subframe = scene.frame_current, scene.frame_subframe
     try:
         with changed(render_settings(scene, frames, path)):
@@ -197,6 +226,7 @@ def render_and_denoise(scene, folder, frames, program, still=False, bidirectiona
         refuse_other_frames(folder, frames)
     write_cameras(scene, frames, os.path.join(folder, "cameras.json"))
     render_frames(scene, frames, folder)
+    remove_frames(folder, "clean", frames)
     run_limpid(program, folder, f"{frames[0]:04d}" if still else "%04d", bidirectional)
     require_files(folder, "clean", frames, "limpid wrote no picture")
 

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import addon_utils
 import bpy
@@ -28,7 +29,8 @@ for noisy in noisy.*.exr; do cp "$noisy" "clean.${noisy#noisy.}"; done
 
 ANGLE = 0.9
 SETTINGS = {"frame_start": 3, "frame_end": 4, "frame_step": 2}
-RENDER = {"use_file_extension": False, "use_compositing": True, "use_sequencer": True, "use_motion_blur": True}
+RENDER = {"use_file_extension": False, "use_compositing": True, "use_sequencer": True, "use_motion_blur": True,
+          "use_overwrite": False, "use_placeholder": True}
 IMAGE = {"file_format": "JPEG", "color_mode": "BW", "quality": 77}
 
 
@@ -106,6 +108,7 @@ class AddonTest(unittest.TestCase):
         self.assertEqual(scene.render.filepath, os.path.join(self.folder, "100% out", "picture"))
         self.assertEqual(scene.frame_current, 4)
         self.assertTrue(scene.cycles.use_denoising)
+        self.assertFalse(scene.cycles.use_animated_seed)
 
     def cameras(self):
         return json.loads(read(self.results, "cameras.json"))["frames"]
@@ -131,6 +134,38 @@ class AddonTest(unittest.TestCase):
         self.scene.limpid_bidirectional = False
         self.assertEqual(self.denoise(), {"FINISHED"})
         self.assertNotIn("--bidirectional", read(self.folder, "arguments"))
+
+    def is_seed_changed_while_rendering(self):
+        seen = []
+
+        def look(scene, *_):
+            seen.append(scene.cycles.use_animated_seed)
+
+        bpy.app.handlers.render_pre.append(look)
+        try:
+            self.denoise()
+        finally:
+            bpy.app.handlers.render_pre.remove(look)
+        self.assertEqual(len(seen), 2)
+        self.assert_settings_restored()
+        return all(seen)
+
+    def test_changes_the_seed_with_the_frame(self):
+        self.assertTrue(self.is_seed_changed_while_rendering())
+
+    def test_leaves_an_animated_seed_alone(self):
+        self.scene.driver_add("cycles.seed").driver.expression = "frame"
+        self.assertFalse(self.is_seed_changed_while_rendering())
+        self.scene.driver_remove("cycles.seed")
+        self.scene.keyframe_insert("cycles.seed", frame=3)
+        self.assertFalse(self.is_seed_changed_while_rendering())
+
+    def test_takes_no_frames_of_an_earlier_render(self):
+        self.denoise()
+        with unittest.mock.patch.object(self.addon, "bpy"):  # its render does nothing, as if it was cancelled
+            with self.assertRaisesRegex(self.addon.Problem, "cancelled or failed"):
+                self.addon.render_frames(self.scene, range(3, 5), self.results)
+        self.assertFalse([name for name in os.listdir(self.results) if name.startswith("noisy.")])
 
     def test_renders_multilayer_pictures_with_all_passes(self):
         self.denoise()
