@@ -3,20 +3,17 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <map>
-#include <set>
 #include <vector>
 
-#include "renderer/method/presets.h"
 #include "tests/denoise/denoise_fixture.h"
+#include "tests/denoise/svgf_cases.h"
+#include "tests/denoise/svgf_fixture.h"
 #include "tests/oracle/svgf/double_svgf.h"
 
 namespace limpid::test {
 namespace {
-
-using denoise::SvgfSettings;
 
 DoubleSvgfParams inDouble(const SvgfSettings& s) {
     return {.minAlbedo = s.demodulate ? double{s.minAlbedo} : 0.0,
@@ -49,46 +46,7 @@ DoubleSvgfParams inDouble(const SvgfSettings& s) {
             .position = s.position};
 }
 
-struct Case {
-    const char* name;
-    SyntheticOptions options;
-    SvgfSettings settings;
-    uint32_t columns = 101, rows = 57;
-    int frames = 8;
-    int resizeAt = -1;     ///< from this frame on the picture is smaller
-    int jumpAt = -1;       ///< from this frame on the light is three times as bright
-    bool hasNans = false;  ///< and infinities, in radiance, albedo and roughness
-    bool hasRoughness = true;
-    int mixesFrom = 0;          ///< before this frame, filtered light is not stabilised
-    bool hasNegatives = false;  ///< a quarter of the light is 0, a quarter below 0
-};
-
-SvgfSettings preset(const char* name) {
-    RenderSettings settings;
-    applyPreset(settings, name);
-    return settings.denoisers.svgf;
-}
-
-struct Signal {
-    std::string name;
-    SvgfSignal signal;
-};
-
-std::vector<Signal> signalsOf(const SvgfSettings& settings) {
-    if (!settings.separate) return {{"joint", SvgfSignal::Joint}};
-    return {{"diffuse", SvgfSignal::Diffuse}, {"specular", SvgfSignal::Specular}};
-}
-
-/// The accumulated light, with its deviation in space where the history is short.
-gpu::ImageHandle withVariance(const gpu::FrameGraph& graph, const std::string& signal) {
-    for (const gpu::ImageHandle image : graph.imagesWrittenBy("svgf/variance " + signal)) {
-        const std::string name = graph.name(image);
-        if (name.ends_with(" color") || name.ends_with(" accumulated")) return image;
-    }
-    throw Error("svgf/variance writes no light");
-}
-
-using CaseParam = std::tuple<Case, bool, gpu::Backing>;
+using CaseParam = std::tuple<SvgfCase, bool, gpu::Backing>;
 
 std::string nameOf(const testing::TestParamInfo<CaseParam>& info) {
     return std::string(std::get<0>(info.param).name) + (std::get<1>(info.param) ? "Separate" : "Joint") +
@@ -219,7 +177,7 @@ class SvgfPassTest : public DenoiseTest, public testing::WithParamInterface<Case
 };
 
 HostFrame SvgfPassTest::frameOf(int number) {
-    const Case& c = std::get<0>(GetParam());
+    const SvgfCase& c = std::get<0>(GetParam());
     const bool small = c.resizeAt >= 0 && number >= c.resizeAt;
     HostFrame frame = SyntheticScene(c.options).frame(number, small ? 61 : c.columns, small ? 43 : c.rows, 7);
     if (c.jumpAt >= 0 && number >= c.jumpAt) {
@@ -423,7 +381,7 @@ void SvgfPassTest::compare(const HostFrame& frame) {
 TEST_P(SvgfPassTest, EveryPassAgreesWithTheFormulasInDouble) {
     const denoise::Denoiser* const method = denoise::findDenoiser("svgf");
     ASSERT_NE(method, nullptr);
-    const Case& c = std::get<0>(GetParam());
+    const SvgfCase& c = std::get<0>(GetParam());
     const float stabilisationAlpha = settings_.stabilisationAlpha;
     for (int number = 0; number < c.frames; ++number) {
         settings_.stabilisationAlpha = number < c.mixesFrom ? 1.0f : stabilisationAlpha;
@@ -445,168 +403,14 @@ TEST_P(SvgfPassTest, EveryPassAgreesWithTheFormulasInDouble) {
     }
 }
 
-const SyntheticOptions moving{.cameraMoves = true, .objectMoves = true};
-
-std::vector<Case> allCases() {
-    return {
-        Case{"Static", {}, {}},
-        Case{"Camera", {.cameraMoves = true}, {}},
-        Case{"Object", {.objectMoves = true}, {}},
-        Case{"Both", moving, {}},
-        Case{"Orthographic", {.cameraMoves = true, .objectMoves = true, .orthographic = true}, {}},
-        Case{"LargeScale", {.cameraMoves = true, .objectMoves = true, .scale = 1024}, {}},
-        Case{.name = "Resize", .options = moving, .settings = {}, .resizeAt = 4},
-        Case{"Tiny", moving, {}, 3, 2},
-        Case{"Thin", {}, {}, 1, 40},
-        Case{"Position",
-             moving,
-             {.historyLevel = 2, .phiNormal = 0.3f, .phiDepth = 0.5f, .blurLevels = 0, .position = true}},
-        Case{"PositionOrthographic",
-             {.cameraMoves = true, .orthographic = true},
-             {.levels = 2, .historyLevel = 5, .phiNormal = 0.3f, .phiDepth = 0.5f, .position = true}},
-        Case{"Cis565", moving, preset("svgf-cis565")},
-        Case{"Paper", moving, preset("svgf-paper")},
-        Case{"Fireflies", moving, {.fireflies = 0.2f, .levels = 2}},
-        Case{"NoFireflies", moving, {.fireflies = 0.0f, .levels = 2}},
-        Case{"WideFill", moving, {.youngRadius = 7, .levels = 2, .historyLevel = 1}},
-        Case{"NoFill", moving, {.youngRadius = 0, .levels = 2}},
-        Case{"ThreeLevels", moving, {.levels = 3}},
-        Case{"Wide", moving, {.wide = true}},
-        Case{"NarrowLobes", moving, {.lobeTest = 1.0f, .phiRoughness = 0.03f}},
-        Case{.name = "NoRoughness", .options = moving, .settings = {.levels = 2}, .hasRoughness = false},
-        Case{"NoLobes", moving, {.lobeTest = 0.0f, .levels = 2, .phiRoughness = 0.0f}},
-        Case{"DarkAlbedo", moving, {.minAlbedo = 0.1f}},
-        Case{"Modulated", moving, {.demodulate = false, .levels = 3, .historyLevel = 0}},
-        Case{"NoLevels", moving, {.depthTest = 0.2f, .relative = false, .search = false, .levels = 0}},
-        Case{"Slow", moving, {.alpha = 0.05f, .alphaMoments = 0.1f, .alphaFast = 0.3f, .levels = 1}},
-        Case{"Fast", moving, {.alpha = 0.6f, .alphaMoments = 0.5f, .alphaFast = 0.9f, .levels = 1}},
-        Case{"Noiseless", {.cameraMoves = true, .noise = false}, {}},
-        Case{"NoReflections", moving, {.reflections = false, .levels = 1}},
-        Case{"NotStabilised", moving, {.stabilisationAlpha = 1.0f, .levels = 2}},
-        Case{"StabilisedAndFedBack", moving, {.stabilisationNoise = 2.0f, .levels = 2, .historyLevel = 2}},
-        Case{.name = "MixedLater",
-             .options = moving,
-             .settings = {.stabilisationNoise = 9.0f, .levels = 1},
-             .mixesFrom = 3},
-        Case{"OwnLuminance", moving, {.levels = 3, .meanLevels = 0}},
-        Case{"MeanLuminances", moving, {.levels = 3, .wide = true, .meanLevels = 2}},
-        Case{"OutliersKept", moving, {.levels = 3, .dampOutliers = false}},
-        Case{"NoBoost", moving, {.levels = 2, .boost = false}},
-        Case{.name = "Lag", .options = moving, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
-        Case{.name = "StaticLag", .options = {}, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
-        Case{.name = "LittleLag",
-             .options = moving,
-             .settings = {.antilag = 0.09f, .levels = 1},
-             .frames = 10,
-             .jumpAt = 6},
-        Case{.name = "EqualMeans",
-             .options = moving,
-             .settings = {.alphaMoments = 0.3f, .alphaFast = 0.3f, .levels = 1},
-             .frames = 6},
-        Case{.name = "NoSlowMean", .options = moving, .settings = {.alphaMoments = 1.0f, .levels = 1}},
-        Case{.name = "Nans",
-             .options = moving,
-             .settings = {.levels = 3},
-             .frames = 10,
-             .jumpAt = 6,
-             .hasNans = true},
-        Case{.name = "Negatives", .options = moving, .settings = {.levels = 0}, .hasNegatives = true}};
-}
-
-/// Filters in buffers differ in where they load and store: cases of sizes, histories and tiles tell.
-std::vector<Case> casesInBuffers() {
-    const std::set<std::string> names{"Both", "Orthographic",  "Resize",   "Tiny",
-                                      "Thin", "Position",      "Wide",     "Lag",
-                                      "Nans", "NotStabilised", "Fireflies"};
-    std::vector<Case> chosen;
-    std::ranges::copy_if(allCases(), std::back_inserter(chosen),
-                         [&](const Case& c) { return names.contains(c.name); });
-    return chosen;
-}
-
 INSTANTIATE_TEST_SUITE_P(Images, SvgfPassTest,
-                         testing::Combine(testing::ValuesIn(allCases()), testing::Bool(),
+                         testing::Combine(testing::ValuesIn(svgfCases()), testing::Bool(),
                                           testing::Values(gpu::Backing::Image)),
                          nameOf);
 INSTANTIATE_TEST_SUITE_P(Buffers, SvgfPassTest,
-                         testing::Combine(testing::ValuesIn(casesInBuffers()), testing::Bool(),
+                         testing::Combine(testing::ValuesIn(svgfCasesInBuffers()), testing::Bool(),
                                           testing::Values(gpu::Backing::Buffer)),
                          nameOf);
-
-/// Statistics of one signal's pixels over an ensemble of independent sequences.
-struct Ensemble {
-    explicit Ensemble(size_t pixels) : sum(pixels, 0.0), squares(sum), first(sum), last(sum) {}
-
-    std::vector<double> sum, squares;  ///< of the samples' luminance
-    std::vector<double> first, last;   ///< sums of sigma^2 of the first and of the last frame
-};
-
-class SvgfVarianceTest : public DenoiseTest {
-  protected:
-    static constexpr uint32_t columns = 64, rows = 36, seeds = 24;
-    static constexpr int frames = 40;
-
-    void addDeviations(const std::string& signal, std::vector<double>& sums) {
-        const std::vector<dvec4> color = download(withVariance(graph_, signal));
-        for (size_t p = 0; p < sums.size(); ++p) sums[p] += color[p].w * color[p].w;
-    }
-
-    /// Returns the mean over pixels with a hit of E[sigma^2] / (true variance), for both frames. Both are
-    /// first divided by the squared mean, so that bright pixels count as much as dark ones.
-    static dvec2 ratios(const HostFrame& frame, const Ensemble& e) {
-        const double samples = double{seeds} * frames;
-        double variance = 0.0;
-        dvec2 estimates(0.0);
-        for (size_t p = 0; p < frame.pixelCount(); ++p) {
-            const double mean = e.sum[p] / samples, square = mean * mean;
-            if (!DoubleFrame(frame).hit(p) || square == 0.0) continue;
-            variance += (e.squares[p] / samples - square) / square;
-            estimates += dvec2(e.first[p], e.last[p]) / double{seeds} / square;
-        }
-        return estimates / variance;
-    }
-};
-
-TEST_F(SvgfVarianceTest, TheDeviationIsThatOfTheNoise) {
-    const denoise::Denoiser* const method = denoise::findDenoiser("svgf");
-    ASSERT_NE(method, nullptr);
-    DenoiserSettings settings;
-    settings.svgf.levels = 0;     // moments are never filtered
-    settings.svgf.boost = false;  // it exceeds the samples' deviation, which this test measures
-    const SyntheticScene scene({});
-    const std::vector<Signal> signals = signalsOf(settings.svgf);
-    std::vector<Ensemble> ensembles(signals.size(), Ensemble(size_t{columns} * rows));
-    for (uint32_t seed = 0; seed < seeds; ++seed) {
-        graph_.beginFrame();
-        graph_.resetHistories();
-        for (int number = 0; number < frames; ++number) {
-            const HostFrame frame = scene.frame(number, columns, rows, seed);
-            denoise(*method, frame, settings);
-            for (size_t s = 0; s < signals.size(); ++s) {
-                Ensemble& e = ensembles[s];
-                for (size_t p = 0; p < frame.pixelCount(); ++p) {
-                    const double l =
-                        luminance(svgfSample(frame, signals[s].signal, p, double{settings.svgf.minAlbedo}).x);
-                    e.sum[p] += l;
-                    e.squares[p] += l * l;
-                }
-                if (number == 0) addDeviations(signals[s].name, e.first);
-                if (number == frames - 1) addDeviations(signals[s].name, e.last);
-            }
-        }
-    }
-    const HostFrame frame = scene.frame(0, columns, rows, 0);
-    const double alpha = double{settings.svgf.alphaMoments};
-    for (size_t s = 0; s < signals.size(); ++s) {
-        const dvec2 ratio = ratios(frame, ensembles[s]);
-        const double steady = ratio.y / (1.0 - alpha / (2.0 - alpha));
-        RecordProperty(signals[s].name + "_young", std::to_string(ratio.x));
-        RecordProperty(signals[s].name + "_steady", std::to_string(steady));
-        EXPECT_NEAR(steady, 1.0, 0.2) << signals[s].name;
-        EXPECT_GT(ratio.x, 0.5) << signals[s].name;
-        EXPECT_LT(ratio.x, 2.0) << signals[s].name;
-    }
-}
 
 }  // namespace
 }  // namespace limpid::test
