@@ -125,7 +125,7 @@ typedef enum limpid_input {
     LIMPID_INPUT_RADIANCE = 0,          /* rgb: light scattered towards the eye; with two signals diffuse light.
                                            Required. Any unit, but filters keep light divided by albedo in half
                                            precision: scale it if much of that is above 65504 (it is cut off) or
-                                           below 1e-4 (it loses precision).
+                                           below 1e-5 (it is rounded to multiples of 6e-8).
                                            r alone: visibility, with LIMPID_METHOD_VISIBILITY. */
     LIMPID_INPUT_SPECULAR = 1,          /* rgb: specular light. Required with two signals. */
     LIMPID_INPUT_EMISSION = 2,          /* rgb: directly visible emitters and sky; not filtered */

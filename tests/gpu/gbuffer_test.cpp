@@ -331,6 +331,41 @@ TEST_P(GBufferTest, MeanLightOfAFloorUnderAnUnevenSky) {
     EXPECT_LT(std::abs(mean - 0.6), 4.0 * sigma);
 }
 
+/// The base's normals lean towards the camera, so most of what the coat mirrors is below the base's horizon.
+TEST_P(GBufferTest, MeanLightOfACoatOverABaseWithOtherNormals) {
+    scene::Scene scene = viewedFloor();
+    scene.environment = {16, 8, std::vector<vec3>(128, vec3(1.0f))};
+    scene::Mesh& mesh = scene.meshes.at(0);
+    mesh.normals.assign(4, vec3(0, 1, 0));
+    mesh.tangents.assign(4, vec4(1, 0, 0, 1));
+    mesh.uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    scene.textures.push_back({"normals", 1, 1, {128, 17, 191, 255}, false, {}});
+    scene::Material& material = scene.materials.at(0);
+    material.baseColor = vec4(vec3(0.0f), 1.0f);
+    material.normalTexture.texture = 0;
+    material.clearcoat = 1.0f;
+    material.clearcoatRoughness = 0.6f;
+    Stage stage(device(), scene, GetParam());
+    CameraLaunch launch = centredLaunch(scene, extent);
+    constexpr uint32_t frames = 16;
+    double sum = 0.0, squares = 0.0, albedo = 0.0;
+    for (launch.stream = 0; launch.stream < frames; ++launch.stream) {
+        const GBufferImages images = look(stage, launch);
+        for (const vec4& light : pixels(stage, images.light)) {
+            sum += double{light.x};
+            squares += double{light.x} * double{light.x};
+        }
+        for (const vec4& share : pixels(stage, images.albedoSpecular)) albedo += double{share.x};
+    }
+    constexpr double count = double{frames} * extent.width * extent.height;
+    const double mean = sum / count, sigma = std::sqrt((squares / count - mean * mean) / count);
+    const double expected = albedo / count;
+    fmt::print("coat: mean {:.5f}, its albedo {:.5f}; sigma {:.5f}\n", mean, expected, sigma);
+    EXPECT_GT(expected, 0.02);
+    EXPECT_LT(sigma, 0.02 * expected);
+    EXPECT_NEAR(mean, expected, 4.0 * sigma + 0.03 * expected);
+}
+
 /// Positions lie on the primary ray through the point given by the random numbers, and normals are those of
 /// the triangles.
 TEST_P(GBufferTest, PositionsAreWhereTheRaysMeetTheFloor) {

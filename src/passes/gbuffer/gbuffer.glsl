@@ -45,8 +45,14 @@ struct Seen {
 /// Samples one light. There is no BSDF sampling here, so the light counts in full; perfectly smooth lobes
 /// show no light.
 vec3 directLight(Surface surface, Bsdf bsdf, uint rng, inout uint rays) {
+    SceneParams scene = params.scene;
+    if (HAS_CLEARCOAT) {
+        // A coat with a normal of its own also reflects sky that is below the base's horizon, where an even sky would
+        // not be sampled.
+        if (surface.clearcoat > 0.0 && surface.clearcoatNormal != surface.normal) scene.environmentIsEven = 0u;
+    }
     LightShares shares;
-    const LightSample drawn = sampleLight(litAt(surface), params.scene, rng, shares);
+    const LightSample drawn = sampleLight(litAt(surface), scene, rng, shares);
     const BsdfValue value = evaluateBsdf(bsdf, drawn.direction);
     vec3 scattered = drawn.radiance * (value.diffuse + value.specular) / max(drawn.pdf, 1e-30);
     if (HAS_VOLUME) {

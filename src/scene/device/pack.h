@@ -1,6 +1,7 @@
 // The steps of buildSceneData(), each in a file of its own.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <optional>
 
@@ -35,6 +36,14 @@ void fillGgxTable(std::vector<vec4>& table);
 void fillSheenTable(std::vector<vec4>& table);
 /// Fills the table with the multiple scattering of a rough dielectric boundary: reflection and transmission.
 void fillDielectricTable(std::vector<vec4>& table);
+
+/// Returns a triangle's area. Lengths far from 1 neither overflow nor underflow on the way.
+double triangleArea(const std::array<vec3, 3>& corners);
+
+/// Returns the magnitude in the record of a triangle light (scene_layout.h).
+/// @param own    corners in the mesh's coordinates
+/// @param world  the same in the world
+uint32_t packMagnitude(const mat4& toWorld, const std::array<vec3, 3>& own, const std::array<vec3, 3>& world);
 
 /// Packs a unit vector as two snorm16 (Z. H. Cigolle et al., "A survey of efficient representations for
 /// independent unit vectors", JCGT 2014).

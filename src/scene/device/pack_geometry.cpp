@@ -122,10 +122,12 @@ class GeometryPacker {
         data_.features.mirrored |= transform.mirrored || instance.movement != Movement::Still;
         uint32_t firstTriangle = meshFirstTriangle_[meshIndex];
         uint32_t flags = transform.mirrored ? layout::INSTANCE_MIRRORED : 0u;
+        const bool hasTree = instance.movement == Movement::Deforming || instanced_[meshIndex];
+        if (hasTree) flags |= layout::INSTANCE_HAS_TREE;
         if (instance.movement == Movement::Deforming) {
             firstTriangle = packDeforming(index, mesh);
             flags |= layout::INSTANCE_DEFORMING;
-        } else if (!instanced_[meshIndex]) {
+        } else if (!hasTree) {
             firstTriangle = packShading(mesh, transform, static_cast<uint32_t>(instance.material));
             for (size_t t = 0; t < mesh.triangleCount(); ++t) {
                 addTriangle(mesh, t, transform, static_cast<uint32_t>(t) | alphaFlag(mesh, instance, t),

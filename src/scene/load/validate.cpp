@@ -116,15 +116,13 @@ Fault checkMaterial(const Material& m, size_t textures) {
     return {};
 }
 
-/// Checks the mesh's bounds in world space; sums must stay finite too, since boxes are averaged and
-/// subtracted.
-bool staysFinite(const vec3& lower, const vec3& upper, const mat4& toWorld) {
-    constexpr float limit = 1e18f;  // squared lengths and areas must not overflow
+/// Checks the mesh's bounds in a space.
+bool staysInRange(const vec3& lower, const vec3& upper, const mat4& toSpace) {
     for (int corner = 0; corner < 8; ++corner) {
         const vec3 point(corner & 1 ? upper.x : lower.x, corner & 2 ? upper.y : lower.y,
                          corner & 4 ? upper.z : lower.z);
-        const vec3 world = glm::abs(vec3(toWorld * vec4(point, 1.0f)));
-        if (!(world.x < limit && world.y < limit && world.z < limit)) return false;
+        const vec3 size = glm::abs(vec3(toSpace * vec4(point, 1.0f)));
+        if (!(size.x < coordinateLimit && size.y < coordinateLimit && size.z < coordinateLimit)) return false;
     }
     return true;
 }
@@ -159,8 +157,10 @@ Fault checkInstances(const Scene& scene) {
             return fault("uses a material that does not exist");
         }
         if (!isFiniteMatrix(instance.transform)) return fault("has a transform that is not finite");
-        if (!staysFinite(use.lower, use.upper, instance.transform))
-            return fault("is too far away or too large");
+        if (!staysInRange(use.lower, use.upper, instance.transform))
+            return fault("is too far away or too large: coordinates must be below 1e12");
+        if (!staysInRange(use.lower, use.upper, mat4(1.0f)))
+            return fault("uses a mesh that is too large: coordinates must be below 1e12");
     }
     return {};
 }

@@ -8,6 +8,10 @@
 
 namespace limpid::scene {
 
+/// Coordinates are below this, in the world and in a mesh's own space. Tracers multiply three lengths, each
+/// up to 3.5 times as long, which must not overflow.
+inline constexpr float coordinateLimit = 1e12f;
+
 /// Returns the first violated invariant as a sentence; none if the scene is valid. Checks that indices and
 /// material slots are in range, attribute lengths, finite positions and transforms (in object and world
 /// space), unit normals and tangents, texture sizes, and finite radiometric values that are not negative.

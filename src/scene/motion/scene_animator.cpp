@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "scene/device/pack.h"
 #include "scene/device/trees/top_tree.h"
+#include "scene/load/validate.h"
 #include "scene/model/camera.h"
 #include "scene/prepare/mesh_repair.h"
 
@@ -70,11 +71,11 @@ bool isMirrored(const mat4& m) {
     return glm::determinant(mat3(m)) < 0.0f;
 }
 
-/// True if squared lengths and areas cannot overflow: the same limit as findFault() for scenes at rest. Boxes
-/// that became NaN are empty and fail.
+/// The same limit as findFault() for scenes at rest. Boxes that became NaN are empty and fail.
 bool isInRange(const Aabb& box) {
     const auto small = [](const vec3& v) {
-        return std::abs(v.x) < 1e18f && std::abs(v.y) < 1e18f && std::abs(v.z) < 1e18f;
+        const vec3 size = glm::abs(v);
+        return size.x < coordinateLimit && size.y < coordinateLimit && size.z < coordinateLimit;
     };
     return !box.empty() && small(box.lower) && small(box.upper);
 }
@@ -275,22 +276,21 @@ void SceneAnimator::addMovingTree(const Moment& now, SceneFrame& frame) const {
     frame.params.sceneRadius = std::max(0.5f * glm::length(all.size()), 1e-20f);
 }
 
-std::vector<vec3> SceneAnimator::worldPositions(uint32_t index, const Moment& moment) const {
+SceneAnimator::Placed SceneAnimator::placed(uint32_t index, const Moment& moment) const {
     const Instance& instance = scene_.instances[index];
     const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
-    std::vector<vec3> positions = mesh.positions;
-    mat4 toWorld = moment.pose.toWorld[static_cast<size_t>(instance.node)];
+    Placed result{mesh.positions, moment.pose.toWorld[static_cast<size_t>(instance.node)]};
     if (instance.movement == Movement::Deforming) {
         std::span<const mat4> joints;
         if (instance.skin != none) {
             joints = moment.skins.at(instance.skin);
-            toWorld = mat4(1.0f);
+            result.toWorld = mat4(1.0f);
         }
-        positions = deform(*mesh.deformation, moment.pose.weights[static_cast<size_t>(instance.node)], joints)
-                        .positions;
+        result.positions =
+            deform(*mesh.deformation, moment.pose.weights[static_cast<size_t>(instance.node)], joints)
+                .positions;
     }
-    for (vec3& p : positions) p = vec3(toWorld * vec4(p, 1.0f));
-    return positions;
+    return result;
 }
 
 void SceneAnimator::addTriangleLights(const Moment& now, SceneFrame& frame, LightTree& tree) const {
@@ -299,22 +299,24 @@ void SceneAnimator::addTriangleLights(const Moment& now, SceneFrame& frame, Ligh
         const MovingLights& lights = motion_.lights[moving];
         const Instance& instance = scene_.instances[lights.instance];
         const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
-        const std::vector<vec3> positions = worldPositions(lights.instance, now);
+        const auto [positions, toWorld] = placed(lights.instance, now);
         const bool mirrored =
             instance.skin == none && isMirrored(now.pose.toWorld[static_cast<size_t>(instance.node)]);
         for (size_t i = 0; i < lights.triangles.size(); ++i) {
             const uint32_t* index = &mesh.indices[size_t{3} * lights.triangles[i]];
-            const std::array<vec3, 3> corners{positions[index[0]], positions[index[mirrored ? 2 : 1]],
-                                              positions[index[mirrored ? 1 : 2]]};
+            const std::array<vec3, 3> own{positions[index[0]], positions[index[mirrored ? 2 : 1]],
+                                          positions[index[mirrored ? 1 : 2]]};
+            std::array<vec3, 3> corners{};
+            for (size_t k = 0; k < 3; ++k) corners[k] = vec3(toWorld * vec4(own[k], 1.0f));
             std::array<uvec4, layout::LIGHT_TEXELS> record{};
             std::copy_n(lightRecords_[moving].begin() + static_cast<std::ptrdiff_t>(i * record.size()),
                         record.size(), record.begin());
             for (size_t k = 0; k < 3; ++k) record[k] = bits(corners[k], record[k].w);
-            record[0].w = (record[0].w & ~layout::LIGHT_MIRRORED) | (mirrored ? layout::LIGHT_MIRRORED : 0u);
+            record[0].w = (record[0].w & layout::LIGHT_KIND_MASK) | (mirrored ? layout::LIGHT_MIRRORED : 0u) |
+                          packMagnitude(toWorld, own, corners);
             records.add<uvec4>((lights.firstLight + i) * sizeof(record), record);
 
-            const float area =
-                0.5f * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+            const auto area = static_cast<float>(triangleArea(corners));
             const float density = area > 0.0f ? lights.probabilities[i] / area : 0.0f;
             densities.add<float>((uint64_t{lights.firstDensity} + lights.triangles[i]) * sizeof(float),
                                  std::span(&density, 1));

@@ -53,7 +53,12 @@ class SceneAnimator {
     void addTriangleLights(const Moment& now, SceneFrame& frame, LightTree& tree) const;
     void addPunctualLights(const Moment& now, SceneFrame& frame, LightTree& tree) const;
     static void addLightTree(LightTree& tree, SceneFrame& frame);
-    std::vector<vec3> worldPositions(uint32_t instance, const Moment& moment) const;
+    /// An instance's vertices in its own coordinates, and where these are.
+    struct Placed {
+        std::vector<vec3> positions;
+        mat4 toWorld;
+    };
+    Placed placed(uint32_t instance, const Moment& moment) const;
 
     const Scene& scene_;
     MotionData motion_;

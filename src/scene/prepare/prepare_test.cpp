@@ -424,6 +424,11 @@ TEST(Prepare, RefusesBrokenScenes) {
         [](Scene& s) { s.instances[0].material = 1; },
         [&](Scene& s) { s.instances[0].transform[3].x = nan; },
         [](Scene& s) { s.instances[0].transform[0].x = 1e30f; },
+        [](Scene& s) { s.instances[0].transform[3].x = 2e12f; },
+        [](Scene& s) {
+            s.instances[0].transform = mat4(mat3(1e-6f));
+            for (vec3& p : s.meshes[0].positions) p = 1e13f * (p + 1.0f);
+        },
         [](Scene& s) { s.materials[0].emission.x = -1.0f; },
         [&](Scene& s) { s.materials[0].roughness = nan; },
         [](Scene& s) { s.materials[0].baseColorTexture.texture = 0; },
@@ -442,6 +447,9 @@ TEST(Prepare, RefusesBrokenScenes) {
         faults[i](scene);
         EXPECT_THROW(prepare(scene), Error) << "fault " << i;
     }
+    Scene far = squareScene();
+    far.instances[0].transform[3].x = 5e11f;
+    EXPECT_EQ(findFault(far), std::nullopt);
 }
 
 // --- alpha

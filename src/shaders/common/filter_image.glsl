@@ -7,12 +7,14 @@
 
 const float MAX_HALF = 65504.0;
 
-/// Rounds to the nearest half, ties to even, for magnitudes from 2^-14 (smaller ones keep too many bits) to
-/// MAX_HALF. Drivers round towards zero in packHalf2x16 and in stores, which would darken the picture with
-/// every level of a filter.
+/// Rounds to the nearest half, ties to even, for magnitudes up to MAX_HALF. Drivers round towards zero in
+/// packHalf2x16 and in stores, which would darken the picture with every level of a filter.
 vec4 nearestHalf(vec4 value) {
     const uvec4 bits = floatBitsToUint(value);
-    return uintBitsToFloat((bits + 0xFFFu + (bits >> 13 & 1u)) & ~0x1FFFu);
+    const vec4 normal = uintBitsToFloat((bits + 0xFFFu + (bits >> 13 & 1u)) & ~0x1FFFu);
+    // Halves below 2^-14 are multiples of 2^-24.
+    const vec4 subnormal = roundEven(value * 16777216.0) / 16777216.0;
+    return mix(normal, subnormal, lessThan(abs(value), vec4(1.0 / 16384.0)));
 }
 
 vec4 unpackHalf4(uvec2 texel) {

@@ -24,6 +24,7 @@ mat3 surfaceFrame(vec3 normal, vec3 edge) {
 }
 
 vec3 safeNormalize(vec3 v, vec3 otherwise) {
+    v *= scaleToOne(maxAbs(v));
     const float length2 = dot(v, v);
     return length2 > 1e-30 ? v * inversesqrt(length2) : otherwise;
 }

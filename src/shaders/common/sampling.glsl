@@ -59,6 +59,9 @@ vec2 sampleTriangle(vec2 u) {
 
 /// The power heuristic with exponent 2: E. Veach, "Robust Monte Carlo methods for light transport simulation", 1997.
 float powerHeuristic(float a, float b) {
+    // The limit keeps squares finite: the density of a tiny, distant lamp is large.
+    a = min(a, 1e18);
+    b = min(b, 1e18);
     const float a2 = a * a, b2 = b * b;
     return a2 > 0.0 ? a2 / (a2 + b2) : 0.0;
 }
@@ -126,6 +129,26 @@ uvec2 pixelOfInvocation(uvec2 group, uint local) {
 float maxAbs(vec3 v) {
     const vec3 a = abs(v);
     return max(a.x, max(a.y, a.z));
+}
+
+/// Returns the power of two that takes a magnitude to between 1 and 2. It changes no digit of what it scales, whose
+/// squares then neither overflow nor underflow.
+float scaleToOne(float magnitude) {
+    return uintBitsToFloat(0x7f000000u - (floatBitsToUint(magnitude) & 0x7f800000u));
+}
+
+struct Face {
+    vec3 normal;       // unit; 0 if the triangle has no area
+    float doubleArea;  // twice the area
+};
+
+/// Returns the triangle between two edges from the same corner.
+Face faceBetween(vec3 edge1, vec3 edge2) {
+    // Unscaled, the square of the area would overflow for edges above 4e9, and underflow for edges below 1e-10.
+    const float scale = scaleToOne(max(maxAbs(edge1), maxAbs(edge2)));
+    const vec3 perpendicular = cross(scale * edge1, scale * edge2);
+    const float doubleArea = length(perpendicular), back = scaleToOne(scale);
+    return Face(perpendicular / max(doubleArea, 1e-37), doubleArea * back * back);
 }
 
 /// Takes the first part of an interval that is divided in proportion to two weights, or the second. `u`, in [0,1),

@@ -42,6 +42,7 @@ LIMPID_CONST uint VERTEX_TEXELS = 2u;
 LIMPID_CONST uint INSTANCE_TEXELS = 4u;
 LIMPID_CONST uint INSTANCE_MIRRORED = 1u;   // negative determinant: front faces are clockwise
 LIMPID_CONST uint INSTANCE_DEFORMING = 2u;  // its vertices have their own previous positions
+LIMPID_CONST uint INSTANCE_HAS_TREE = 4u;   // its triangles are in a tree in object space
 
 // previousGeometry, only in moving scenes: for each instance three rows of object-to-world in the previous
 // frame; then for each vertex of deforming instances its position in that instance's space | normal
@@ -89,7 +90,9 @@ LIMPID_CONST uint TEXTURE_UV1 = 512u;
 
 // lights: emissive triangles first, then punctual lights. Triangle: v0 | kind; v1 | probability; v2 | shading
 // triangle; emission | material, or NONE if the emission has no texture and no clear coat. Punctual: position
-// | kind; direction | 0; cos inner | cos outer | range | 0; intensity | 0.
+// | kind; direction | 0; cos inner | cos outer | range | 0; intensity | 0. A triangle's kind also has the
+// largest number that occurs while the triangle of an instance with a tree is placed in the world, as the
+// upper bits of a float; 0 if none is larger than its coordinates there.
 LIMPID_CONST uint LIGHT_TEXELS = 4u;
 LIMPID_CONST uint LIGHT_TRIANGLE = 0u;
 LIMPID_CONST uint LIGHT_TRIANGLE_TWO_SIDED = 1u;
@@ -99,6 +102,7 @@ LIMPID_CONST uint LIGHT_DIRECTIONAL = 4u;
 LIMPID_CONST uint LIGHT_KIND_MASK = 7u;
 LIMPID_CONST uint LIGHT_MIRRORED =
     8u;  // v1 and v2 are swapped relative to the mesh, so that the front face stays the front
+LIMPID_CONST uint LIGHT_MAGNITUDE_MASK = 0xFFFFFFF0u;
 
 // lightTree: children of nodes (scene/device/lights/light_tree.h), the root's first, those of a node one
 // after the other. A child: centre of the bounding sphere | its radius and the range, upper halves of floats;

@@ -81,15 +81,16 @@ float meanCosine(vec2 albedo) {
     return 1.0 - pow(clamp(albedo.y / max(albedo.x + albedo.y, 1e-6), 0.0, 1.0), 0.2);
 }
 
-/// Returns the coat's reflection of uniform light in its strongest channel, of the two terms of the albedo.
+/// Returns the coat's reflection of uniform light in its strongest channel, of the two terms of the albedo. At most 1,
+/// also where rounding says more: a lobe below the coat would have a negative chance.
 float coatAlbedo(Bsdf b, vec2 albedo) {
     if (HAS_IRIDESCENCE) {
         if (b.film.weight > 0.0) {
             const vec3 r = filmedReflectance(b, meanCosine(albedo), b.plasticF0, b.coatF90);
-            return (albedo.x + albedo.y) * max(r.r, max(r.g, r.b));
+            return min((albedo.x + albedo.y) * max(r.r, max(r.g, r.b)), 1.0);
         }
     }
-    return b.coatF0 * albedo.x + b.coatF90 * albedo.y;
+    return min(b.coatF0 * albedo.x + b.coatF90 * albedo.y, 1.0);
 }
 
 /// Returns its mean over all directions. A film's mean is less certain: it is taken so low that nothing gains energy.

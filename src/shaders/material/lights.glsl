@@ -85,23 +85,24 @@ vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics, float
 LightSample sampleTriangleLight(uvec4 r0, uvec4 r1, uvec4 r2, uvec4 r3, vec3 from, vec2 u) {
     const vec3 v0 = uintBitsToFloat(r0.xyz), v1 = uintBitsToFloat(r1.xyz), v2 = uintBitsToFloat(r2.xyz);
     const vec2 barycentrics = sampleTriangle(u);
-    const vec3 perpendicular = cross(v1 - v0, v2 - v0);
-    const float doubleArea = length(perpendicular);
+    const Face face = faceBetween(v1 - v0, v2 - v0);
     const vec3 point = interpolate(v0, v1, v2, barycentrics);
     const vec3 toLight = point - from;
     const float distance2 = dot(toLight, toLight);
-    vec3 normal = perpendicular / max(doubleArea, 1e-37);
+    vec3 normal = face.normal;
     float cosine = -dot(normal, toLight) * inversesqrt(max(distance2, 1e-37));
     if ((r0.w & LIGHT_KIND_MASK) == LIGHT_TRIANGLE_TWO_SIDED && cosine < 0.0) {
         cosine = -cosine;
         normal = -normal;
     }
     LightSample light;
-    light.target = offsetRay(point, normal, max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2))));
+    float magnitude = max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2)));
+    if (TWO_LEVEL) magnitude = max(magnitude, uintBitsToFloat(r0.w & LIGHT_MAGNITUDE_MASK));
+    light.target = offsetRay(point, normal, magnitude);
     light.distance = sqrt(distance2);
     light.direction = toLight / max(light.distance, 1e-37);
-    const bool visible = cosine > 0.0 && doubleArea > 0.0;
-    light.pdf = visible ? 2.0 * distance2 / (doubleArea * cosine) : 0.0;
+    const bool visible = cosine > 0.0 && face.doubleArea > 0.0;
+    light.pdf = visible ? 2.0 * distance2 / (face.doubleArea * cosine) : 0.0;
     const vec2 order = (r0.w & LIGHT_MIRRORED) != 0u ? barycentrics.yx : barycentrics;
     light.radiance = visible ? lightEmission(r3, r2.w, order, cosine) : vec3(0.0);
     light.delta = false;

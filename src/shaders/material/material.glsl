@@ -29,7 +29,8 @@ vec3 objectToWorldNormal(uint instance, vec3 n) {
     const vec3 r2 = uintBitsToFloat(imageLoad(instances, at + 2).xyz);
     // Cofactors: the inverse transpose except for the determinant, whose sign keeps the side.
     const vec3 result = vec3(dot(cross(r1, r2), n), dot(cross(r2, r0), n), dot(cross(r0, r1), n));
-    return normalize(dot(r0, cross(r1, r2)) < 0.0 ? -result : result);
+    const vec3 scaled = scaleToOne(maxAbs(result)) * result;
+    return normalize(dot(r0, cross(r1, r2)) < 0.0 ? -scaled : scaled);
 }
 
 vec3 objectToWorld(uint instance, vec4 p) {
@@ -173,10 +174,9 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
     }
     s.position = interpolate(v0, v1, v2, barycentrics);
     s.magnitude = max(s.magnitude, max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2))));
-    const vec3 perpendicular = cross(v1 - v0, v2 - v0);
-    const float doubleArea = length(perpendicular);
-    s.area = 0.5 * doubleArea;
-    vec3 windingNormal = perpendicular / max(doubleArea, 1e-37);
+    const Face face = faceBetween(v1 - v0, v2 - v0);
+    s.area = 0.5 * face.doubleArea;
+    vec3 windingNormal = face.normal;
     const uvec4 shading = imageLoad(triangles, int(floatBitsToUint(t2.w)));
     s.material = materialOf(shading.w, instanced ? hitInstance : NONE);
     if (HAS_MIRRORED) {
@@ -219,6 +219,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
             if (instanced) {
                 normal = objectToWorldNormal(hitInstance, normal);
                 tangent = objectToWorld(hitInstance, vec4(tangent, 0.0));
+                tangent *= scaleToOne(maxAbs(tangent));
             }
         }
         normal = smoothShaded && dot(normal, normal) > 1e-12 ? normalize(normal) : windingNormal;
@@ -226,8 +227,8 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
         s.baseColor *= data.color.rgb;
         if (HAS_TEXTURES) {
             const uvec4 refs = imageLoad(materials, material + 4);
-            const Footprint footprint = footprintOn(v1 - v0, v2 - v0, perpendicular / max(doubleArea, 1e-37),
-                                                    max(doubleArea, 1e-37), toViewer, cone);
+            const Footprint footprint =
+                footprintOn(v1 - v0, v2 - v0, face.normal, max(face.doubleArea, 1e-37), toViewer, cone);
             const float share = cone.scattered ? 0.0 : 1.0;
             const Footprint emitting = Footprint(share * footprint.across, share * footprint.along, footprint.exact);
             s.baseColor *= materialTexture(refs.x, data, footprint).rgb;
@@ -255,8 +256,8 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
         }
         if (HAS_ANISOTROPY) {
             const float handedness = data.tangent.w * (instanced && mirrored ? -1.0 : 1.0);
-            const Footprint footprint = footprintOn(v1 - v0, v2 - v0, perpendicular / max(doubleArea, 1e-37),
-                                                    max(doubleArea, 1e-37), toViewer, cone);
+            const Footprint footprint =
+                footprintOn(v1 - v0, v2 - v0, face.normal, max(face.doubleArea, 1e-37), toViewer, cone);
             applyAnisotropy(s, material, data, footprint, normal, vec4(tangent, handedness));
         }
         s.normal = facingNormal(s.front ? normal : -normal, s.geometricNormal, toViewer);

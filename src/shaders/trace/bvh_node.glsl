@@ -2,13 +2,14 @@
 #ifndef LIMPID_BVH_NODE_GLSL
 #define LIMPID_BVH_NODE_GLSL
 
+#include "shaders/common/sampling.glsl"
 #include "shaders/common/scene_data.glsl"
 
 const uint KEY_MISS = 0xffffffffu;
 
 struct TraversalRay {
     vec3 origin, direction, inverse;
-    vec3 acrossX, acrossY;        // perpendicular to the ray, of any length
+    vec3 acrossX, acrossY;        // perpendicular to the ray; as long as 1, roughly
     vec3 offsetNear, offsetFar;  // the t of a plane at p is p * inverse + offset; lower and upper bound
 };
 
@@ -17,11 +18,12 @@ TraversalRay traversalRay(vec3 origin, vec3 direction) {
     // overflow.
     const vec3 tiny = vec3(1e-18);
     const vec3 safe = mix(direction, mix(tiny, -tiny, lessThan(direction, vec3(0.0))), lessThan(abs(direction), tiny));
-    const vec3 acrossX = abs(direction.x) > abs(direction.z) ? vec3(-direction.y, direction.x, 0.0)
-                                                             : vec3(0.0, -direction.z, direction.y);
+    // In an instance's own space the direction may have any length, the fifth power of which would be in products.
+    const vec3 along = scaleToOne(maxAbs(direction)) * direction;
+    const vec3 acrossX = abs(along.x) > abs(along.z) ? vec3(-along.y, along.x, 0.0) : vec3(0.0, -along.z, along.y);
     const vec3 inverse = 1.0 / safe;
     const vec3 offset = -origin * inverse, padding = 3e-7 * abs(offset);
-    return TraversalRay(origin, direction, inverse, acrossX, cross(direction, acrossX), offset - padding,
+    return TraversalRay(origin, direction, inverse, acrossX, cross(along, acrossX), offset - padding,
                         offset + padding);
 }
 

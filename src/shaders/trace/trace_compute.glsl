@@ -49,9 +49,9 @@ void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hi
     const vec3 normal = cross(v1 - v0, v2 - v0);
     const float t = dot(v0, normal) / dot(normal, ray.direction);
     const float area = weight0 + weight1 + weight2;
-    // Written so that NaN from a degenerate triangle counts as a miss.
-    bool accepted = area != 0.0 && t > 0.0 && t < hit.t;
     const vec2 barycentrics = vec2(weight1, weight2) / area;
+    // Written so that NaN, from a triangle without area or from numbers out of range, counts as a miss.
+    bool accepted = barycentrics.x + barycentrics.y < 2.0 && t > 0.0 && t < hit.t;
     if (HAS_ALPHA) {
         if (accepted && (floatBitsToUint(texel0.w) & BVH_TRIANGLE_ALPHA) != 0u) {
             accepted = passesAlphaTest(index, instance, barycentrics, rng);

@@ -49,6 +49,18 @@ TEST_P(PanesTest, NeitherWallsNorRoughPanesLetShadowRaysPass) {
     }
 }
 
+/// Rounding must not make more of it, at any angle.
+TEST_P(PanesTest, ACoatThatReflectsEverythingLetsNoLightThrough) {
+    scene::Scene scene = floorBelowLayers();
+    scene.lights = {pointLight()};
+    scene::Material mirror = paneMaterial(vec3(1.0f));
+    mirror.specularColor = vec3(30.0f);
+    addLayer(scene, 1.0f, mirror);
+    const Rendered picture = Renderer(device(), scene, GetParam())(centred(64, 36, 1), 1);
+    EXPECT_EQ(picture.counters.rejected, 0u);
+    for (size_t p = 0; p < picture.pixelCount(); ++p) ASSERT_NEAR(picture.beauty(p).x, 0.0f, 1e-4f) << p;
+}
+
 /// Of a lamp and a sky behind a clear and a clouded pane, at angles up to grazing ones.
 TEST_P(PanesTest, TheMeanIsThatOfPathsThatMeetLampsByChance) {
     scene::Scene scene = floorBelowLayers();

@@ -169,6 +169,59 @@ TEST_F(RulesTest, InstancesWithLargeCoordinatesOfTheirOwnDoNotShadowThemselves) 
     EXPECT_GT(sum, 0.1);
 }
 
+/// Shadow rays must end before such lamps.
+TEST_F(RulesTest, LampsWithLargeCoordinatesOfTheirOwnDoNotShadowThemselves) {
+    scene::MeshBuilder builder("lamp");  // with so many triangles that two of them share one tree
+    constexpr float side = 1.0f / 12.0f;
+    for (int i = 0; i < 2304; ++i) {
+        const float x = side * static_cast<float>(i % 48 - 24), z = side * static_cast<float>(i / 48 - 24);
+        builder.quad({x, 3, z}, {x + side, 3, z}, {x + side, 3, z + side}, {x, 3, z + side});
+    }
+    scene::Scene scene = floorScene(vec3(0.8f));
+    addMesh(scene, builder.take(), scene::emitter("lamp", vec3(0.5f), vec3(3.0f)));
+    scene::addCamera(scene, {0.0f, 2.5f, 3.0f}, {0.0f, 0.0f, 0.0f}, 0.5f);
+    scene.instances.push_back(scene.instances.at(1));
+    scene.instances.at(2).transform = glm::translate(mat4(1.0f), vec3(0.0f, -60.0f, 0.0f));
+    RenderSettings settings = small(24, 4);
+    settings.pathtrace.maxDepth = 1;
+    const double expected = meanOfRed(render(scene, settings, 64));
+    const mat4 placed = glm::translate(mat4(1.0f), {8765.4f, 9876.5f, 7654.3f}) *
+                        glm::rotate(mat4(1.0f), 0.7f, glm::normalize(vec3(0.3f, 0.9f, 1.0f)));
+    for (vec3& position : scene.meshes.at(1).positions) position = vec3(placed * vec4(position, 1.0f));
+    for (const size_t i : {size_t{1}, size_t{2}}) scene.instances.at(i).transform *= glm::inverse(placed);
+    EXPECT_TRUE(scene::buildSceneData(scene).features.twoLevel);
+    const double found = meanOfRed(render(scene, settings, 64));
+    fmt::print("lamps with large coordinates: {:.4f} of the light\n", found / expected);
+    EXPECT_NEAR(found / expected, 1.0, 0.02);
+}
+
+/// Of edges of 7e11, whose areas squared overflow, and of 2e-11, whose areas squared underflow.
+TEST_F(RulesTest, TheSizeOfASceneDoesNotMatter) {
+    const auto picture = [&](int exponent) {
+        const float size = std::ldexp(1.0f, exponent);
+        scene::Scene scene = floorScene(vec3(0.8f));
+        scene::MeshBuilder lamp("lamp");
+        scene::addLamp(lamp, {0.0f, 2.0f, 0.0f}, 1.0f, 1.0f, 0);
+        addMesh(scene, lamp.take(), scene::emitter("lamp", vec3(0.5f), vec3(5.0f)));
+        for (scene::Mesh& mesh : scene.meshes)
+            for (vec3& position : mesh.positions) position *= size;
+        scene::addCamera(scene, size * vec3(0.0f, 3.0f, 4.0f), vec3(0.0f), 0.5f);
+        return render(scene, small(16, 4), 16);
+    };
+    const Rendered expected = picture(0);
+    for (const int exponent : {35, -40}) {
+        const Rendered sized = picture(exponent);
+        EXPECT_EQ(sized.counters.rejected, 0u) << exponent;
+        size_t different = 0;
+        for (size_t p = 0; p < expected.pixelCount(); ++p) {
+            const float light = expected.beauty(p).x;
+            different += !(std::abs(sized.beauty(p).x - light) <= 1e-3f * light + 1e-5f);
+        }
+        EXPECT_LE(different, expected.pixelCount() / 50) << exponent;
+    }
+    EXPECT_GT(meanOfRed(expected), 0.1);
+}
+
 /// KHR_materials_unlit: "the emissive factor and texture are ignored".
 TEST_F(RulesTest, UnlitMaterialsAreNoLamps) {
     scene::Scene scene = floorScene(vec3(0.8f));

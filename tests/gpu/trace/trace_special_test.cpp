@@ -97,6 +97,25 @@ TEST_P(WatertightTest, InstancedSphere) {
     EXPECT_TRUE(twoLevel());
 }
 
+/// The same instances, of meshes whose own units are nanometres, or gigametres.
+TEST_P(WatertightTest, InstancedSphereInOtherUnits) {
+    for (const float unit : {1e9f, 1e-9f}) {
+        scene::Scene scene = plainScene();
+        scene.meshes.push_back(closedSphere());
+        for (vec3& p : scene.meshes[0].positions) p *= unit;
+        const mat4 metres = glm::scale(mat4(1.0f), vec3(1.0f / unit));
+        const mat4 first = glm::rotate(metres, 1.1f, glm::normalize(vec3(3, -1, 2)));
+        addInstance(scene, 0, first);
+        for (int i = 1; i < 4; ++i)
+            addInstance(scene, 0,
+                        glm::translate(mat4(1.0f), vec3(10.0f * static_cast<float>(i), 0, 0)) * metres);
+        expectNoEscape(scene,
+                       raysAtEdges(scene.meshes[0], first, vec3(-0.5f * unit), vec3(0.5f * unit), 20000),
+                       fmt::format("instanced sphere of size {}", unit));
+        EXPECT_TRUE(twoLevel());
+    }
+}
+
 class AlphaTest : public TraceTest {
   protected:
     /// Two squares behind each other: the first of the tested material, then an opaque one.

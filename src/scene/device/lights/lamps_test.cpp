@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <numeric>
 
 #include "scene/builtin/mesh_builder.h"
@@ -102,6 +103,22 @@ TEST(Lamps, ManyPointLightsNeedATree) {
     EXPECT_TRUE(hasTree(scene));
     scene.lights.back().kind = PunctualLight::Kind::Directional;
     EXPECT_FALSE(hasTree(scene)) << "directional lights are in no tree";
+}
+
+/// In the static tree triangles are in the world already: shadow rays must not end far before such a lamp.
+TEST(Lamps, OnlyThoseWithATreeTellHowLargeTheirOwnCoordinatesAre) {
+    Scene scene = lampsOfPowers({1.0f, 1.0f});
+    scene.meshes[1] = row(1500, 0.5f);
+    scene.instances.push_back(scene.instances[1]);
+    for (Mesh& mesh : scene.meshes)
+        for (vec3& position : mesh.positions) position.z += 1e6f;
+    for (Instance& instance : scene.instances) instance.transform[3].z = -1e6f;
+    const SceneData data = buildSceneData(scene);
+    ASSERT_TRUE(data.features.twoLevel);
+    EXPECT_EQ(data.lights[0].w & layout::LIGHT_MAGNITUDE_MASK, 0u) << "it is copied into the static tree";
+    const uint32_t magnitude =
+        data.lights[2 * layout::LIGHT_TEXELS].w & layout::LIGHT_MAGNITUDE_MASK;  // after two triangles
+    EXPECT_GE(std::bit_cast<float>(magnitude), 2e6f);
 }
 
 TEST(Lamps, NoTrianglesAreNoLamps) {

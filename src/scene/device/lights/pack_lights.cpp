@@ -1,6 +1,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -221,8 +222,15 @@ class LightPacker {
         const uint32_t materialIndex = materialOf(instance, mesh, t);
         const Material& material = scene_.materials[materialIndex];
         const uint32_t* index = &mesh.indices[3 * t];
-        vec3 v[3];
-        for (int k = 0; k < 3; ++k) v[k] = vec3(instance.transform * vec4(mesh.positions[index[k]], 1.0f));
+        std::array<vec3, 3> own{}, v{};
+        for (size_t k = 0; k < 3; ++k) {
+            own[k] = mesh.positions[index[k]];
+            v[k] = vec3(instance.transform * vec4(own[k], 1.0f));
+        }
+        const uvec4& record = data_.instances[instanceIndex * layout::INSTANCE_TEXELS + 3];
+        // Rays meet triangles of the static tree in the world.
+        const bool hasTree = (record.w & layout::INSTANCE_HAS_TREE) != 0u;
+        const uint32_t magnitude = hasTree ? packMagnitude(instance.transform, own, v) : 0u;
         if (glm::determinant(mat3(instance.transform)) < 0.0f) std::swap(v[1], v[2]);
         MeanRadiance radiance = meanOf(material.emission);
         const TextureRef& ref = material.emissionTexture;
@@ -233,13 +241,13 @@ class LightPacker {
                                      material.emission, uv.empty() ? zero : uv[index[0]],
                                      uv.empty() ? zero : uv[index[1]], uv.empty() ? zero : uv[index[2]]);
         }
-        const double area = 0.5 * glm::length(glm::cross(v[1] - v[0], v[2] - v[0]));
+        const double area = triangleArea(v);
         const double sides = material.doubleSided ? 2.0 : 1.0;
         const uint32_t kind =
             material.doubleSided ? layout::LIGHT_TRIANGLE_TWO_SIDED : layout::LIGHT_TRIANGLE;
-        const uint32_t firstTriangle = data_.instances[instanceIndex * layout::INSTANCE_TEXELS + 3].z;
+        const uint32_t firstTriangle = record.z;
         const bool mirrored = glm::determinant(mat3(instance.transform)) < 0.0f;
-        data_.lights.push_back(bits(v[0], kind | (mirrored ? layout::LIGHT_MIRRORED : 0u)));
+        data_.lights.push_back(bits(v[0], kind | (mirrored ? layout::LIGHT_MIRRORED : 0u) | magnitude));
         data_.lights.push_back(bits(v[1], 0u));
         data_.lights.push_back(bits(v[2], firstTriangle + static_cast<uint32_t>(t)));
         // Varies between points or with direction, or is not all there.
@@ -247,7 +255,7 @@ class LightPacker {
         data_.lights.push_back(bits(material.emission, changes ? materialIndex : layout::NONE));
         areas_.push_back(static_cast<float>(area));
         radiances_.push_back(static_cast<float>(radiance.strength));
-        bounds_.push_back(triangleLightBounds({v[0], v[1], v[2]}, radiance.strength, material.doubleSided));
+        bounds_.push_back(triangleLightBounds(v, radiance.strength, material.doubleSided));
         return addWeight(std::numbers::pi * area * sides * radiance.luminance, lamp);
     }
 
@@ -350,7 +358,36 @@ void packEnvironment(const Environment& env, SceneData& data) {
     data.params.environmentHeight = env.height;
 }
 
+float largestIn(const std::array<vec3, 3>& points) {
+    const vec3 largest = glm::max(glm::abs(points[0]), glm::max(glm::abs(points[1]), glm::abs(points[2])));
+    return std::max(largest.x, std::max(largest.y, largest.z));
+}
+
 }  // namespace
+
+double triangleArea(const std::array<vec3, 3>& corners) {
+    const vec3 edge1 = corners[1] - corners[0], edge2 = corners[2] - corners[0];
+    const float largest = largestIn({edge1, edge2, vec3(0.0f)});
+    if (!(largest > 0.0f)) return 0.0;
+    // A power of two changes no digit.
+    const int exponent = std::max(std::ilogb(largest), -126);
+    const float scale = std::ldexp(1.0f, -exponent);
+    return std::ldexp(0.5 * double{glm::length(glm::cross(scale * edge1, scale * edge2))}, 2 * exponent);
+}
+
+uint32_t packMagnitude(const mat4& toWorld, const std::array<vec3, 3>& own,
+                       const std::array<vec3, 3>& world) {
+    const vec3 largest = glm::max(glm::abs(own[0]), glm::max(glm::abs(own[1]), glm::abs(own[2])));
+    float magnitude = 0.0f;
+    for (int row = 0; row < 3; ++row) {
+        float sum = std::abs(toWorld[3][row]);
+        for (int column = 0; column < 3; ++column) sum += std::abs(toWorld[column][row]) * largest[column];
+        magnitude = std::max(magnitude, sum);
+    }
+    if (!(magnitude > largestIn(world)) || !std::isfinite(magnitude)) return 0;
+    const uint32_t unused = ~layout::LIGHT_MAGNITUDE_MASK;
+    return (bits(magnitude) + unused) & layout::LIGHT_MAGNITUDE_MASK;  // rounded up
+}
 
 void packLamps(const Scene& scene, SceneData& data, std::optional<bool> hasTree) {
     LightPacker(scene, data).pack(hasTree);
