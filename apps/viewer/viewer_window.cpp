@@ -219,6 +219,7 @@ void ViewerWindow::handleKeys() {
     if (pressed(GLFW_KEY_ESCAPE)) handleEscape();
     if (io.KeyCtrl) {
         if (pressed(window_.keyOf('z'))) io.KeyShift ? redo(panel_) : undo(panel_);
+        if (pressed(window_.keyOf('y')) && !io.KeyShift) redo(panel_);
         if (pressed(window_.keyOf('f'))) panel_.shown = panel_.focusesSearch = true;
         return;
     }

@@ -96,6 +96,10 @@ TEST_F(ViewLayoutTest, FindsMarksAndUndoes) {
     waitForValue(viewer, "seed", "7");
     viewer.click("undo");
     waitForValue(viewer, "seed", "0");
+    viewer.xdotool("mousemove 200 900 key ctrl+y");
+    waitForValue(viewer, "seed", "7");
+    viewer.xdotool("key ctrl+z");
+    waitForValue(viewer, "seed", "0");
 
     // A drag over several pictures of the window is one step.
     const std::string before = viewer.value("field of view");

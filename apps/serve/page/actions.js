@@ -33,7 +33,8 @@ class CommandLine {
                                'aria-label': 'Command line'});
     this.copy = make('button', {type: 'button', textContent: 'copy', click: () => copy(this.text.textContent)});
     this.box = make('div', {className: 'command', hidden: true}, this.text, this.copy);
-    this.button = make('button', {type: 'button', id: 'command-line', textContent: 'command line', click: () => ask('command_line'),
+    this.button = make('button', {type: 'button', id: 'command-line', textContent: 'command line',
+                                  click: () => ask('command_line'),
                                   title: 'The limpid render command that makes this frame again'});
     store.addEventListener('facts', () => this.show(store.facts));
   }
@@ -45,16 +46,40 @@ class CommandLine {
   }
 }
 
+const keyMilliseconds = 100; // what a key chooses in a closed list follows sooner, a choice in an open one later
+
+/// Keys that move through a closed list choose every scene on the way. What they choose waits until Enter is pressed or
+/// the list is left.
 function openScene(connection) {
-  const select = make('select', {id: 'open-scene', change: () => {
-    if (select.value) connection.sendNumbered('open', {scene: select.value});
+  let lastKey = -Infinity;
+  const note = make('p', {className: 'note', id: 'open-scene-note', textContent: 'Enter opens it.', hidden: true});
+  const stopWaiting = () => {
+    note.hidden = true;
     select.selectedIndex = 0;
-  }});
+  };
+  const open = () => {
+    if (select.value) connection.sendNumbered('open', {scene: select.value});
+    stopWaiting();
+  };
+  const openWaiting = event => {
+    if (note.hidden) return;
+    event.preventDefault(); // Enter opens the list in some browsers
+    open();
+  };
+  const byKey = {Enter: openWaiting, Escape: stopWaiting, Tab: () => {}};
+  const select = make('select', {
+    id: 'open-scene', 'aria-describedby': 'open-scene-note', blur: openWaiting,
+    keydown: event => byKey[event.key] ? byKey[event.key](event) : lastKey = performance.now(),
+    change: () => {
+      if (performance.now() - lastKey > keyMilliseconds) open();
+      else note.hidden = !select.value;
+    }});
   const element = make('div', {className: 'field'}, make('div', {className: 'head'},
-      make('label', {htmlFor: 'open-scene', textContent: 'open another scene'})), select);
+      make('label', {htmlFor: 'open-scene', textContent: 'open another scene'})), select, note);
   const setScenes = scenes => {
     select.replaceChildren(make('option', {value: '', textContent: 'choose…'}),
                            ...scenes.map(name => make('option', {value: name, textContent: name})));
+    stopWaiting();
     element.hidden = scenes.length === 0;
   };
   return {element, setScenes};
@@ -80,7 +105,8 @@ export function makeActions(store, connection, ask, status, moved) {
                                     title: 'The rendered picture, lossless',
                                     click: () => downloadPng(connection)}),
                     button('reset', 'reset', 'Means, histories and the frame number begin again'),
-                button('step', 'step', 'Renders one frame, also while rendering is stopped'), command.button), command.box),
+                    button('step', 'step', 'Renders one frame, also while rendering is stopped'),
+                    command.button), command.box),
     camera: row(button('reset_camera', 'reset camera', 'Back to the camera of the start', moved),
                 button('see_all', 'see everything', 'To where the whole scene is seen', moved)),
     light: row(button('add_point', 'add a point', 'A lamp at the camera'),

@@ -5,6 +5,14 @@ import {byId, takesLetters, takesText} from './dom.js';
 /// Controls that Space operates.
 const takesSpace = element => takesLetters(element) || element.matches('input, button, summary, a');
 
+/// What a key does with the steps of undo. On Macs, Y with the command key shows the browser's history.
+function stepOf({key, ctrlKey, metaKey, shiftKey}) {
+  if (!ctrlKey && !metaKey) return null; // also of browsers that fill in a form, which tell no key
+  const letter = key.toLowerCase();
+  if (letter === 'z') return shiftKey ? 'redo' : 'undo';
+  return letter === 'y' && ctrlKey && !shiftKey ? 'redo' : null;
+}
+
 const repeats = ['+', '-'];
 
 export function makeKeys({store, stage, picture, ask, toolbar}) {
@@ -28,10 +36,11 @@ export function makeKeys({store, stage, picture, ask, toolbar}) {
   document.addEventListener('keydown', event => {
     if (byId('keys').open) return;
     const {target} = event;
-    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === 'z') {
+    const step = stepOf(event);
+    if (step) {
       if (takesText(target)) return; // whose own undo it is
       event.preventDefault();
-      return event.shiftKey ? store.redo() : store.undo();
+      return store[step]();
     }
     if (takesLetters(target) || (event.key === ' ' && takesSpace(target))) return;
     if (event.ctrlKey || event.metaKey || event.altKey) return;

@@ -48,11 +48,12 @@ class LightView {
       body.append(make('button', {type: 'button', textContent: 'remove', 'aria-label': `remove ${light.name}`,
                                   click: () => desk.remove(number)}));
     }
-    this.element = make('div', {className: 'light'}, on.element,
-                        make('details', {}, make('summary', {textContent: light.name}), body));
+    this.details = make('details', {}, make('summary', {textContent: light.name}), body);
+    this.element = make('div', {className: 'light'}, on.element, this.details);
   }
 
   show(light) {
+    this.values = JSON.stringify(light);
     for (const show of this.shows) show(light);
   }
 }
@@ -72,7 +73,10 @@ export class LightDesk {
     const shape = JSON.stringify(lights.map(({name, kind, lamp, added}) => [name, kind, lamp, added]));
     if (shape !== this.#shape) {
       this.#shape = shape;
+      // When one is added or removed, others get new numbers, but keep their values. Names are not unique.
+      const open = new Set(this.#views.filter(view => view.details.open).map(view => view.values));
       this.#views = lights.map((light, number) => new LightView(this, number, light));
+      this.#views.forEach((view, number) => { view.details.open = open.has(JSON.stringify(lights[number])); });
       this.element.replaceChildren(...this.#views.map(view => view.element));
       if (!lights.length) this.element.textContent = 'The scene has no lights of its own.';
     }

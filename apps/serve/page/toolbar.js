@@ -46,7 +46,7 @@ export function makeToolbar(store, picture, ask) {
     byId('play').textContent = store.value('playing') ? 'Pause clip' : 'Play clip';
     showPressed('preview', preview.isOn());
     showStep('undo', 'Undo', store.undoes(), 'Ctrl+Z');
-    showStep('redo', 'Redo', store.redoes(), 'Ctrl+Shift+Z');
+    showStep('redo', 'Redo', store.redoes(), 'Ctrl+Shift+Z, Ctrl+Y');
   };
   for (const name of ['state', 'facts', 'history']) store.addEventListener(name, show);
   picture.addEventListener('zoomed', () => {

@@ -3,13 +3,22 @@
 import {make, takesText} from './dom.js';
 import {say} from './status.js';
 
-const types = '.glb,.gltf,.obj,.hdr,.exr';
+const endings = ['.glb', '.gltf', '.obj', '.hdr', '.exr'];
 const reasons = {403: 'the program was started without --uploads', 413: 'the file is too large',
                  400: 'scenes and environments have other names', 503: 'too many files are on their way or in use',
                  507: 'the program cannot store it'};
 
 /// What a name may have; the ending stays.
 const allowed = name => name.replace(/[^A-Za-z0-9._-]/g, '_');
+
+/// The program takes one file at a time: the first that it can open, wherever it stands among its textures.
+const chosenOf = files => files.find(({name}) => endings.some(ending => name.endsWith(ending))) ?? files[0];
+
+function aboutOthers({length}) {
+  if (length < 2) return '';
+  const others = length === 2 ? 'The other file was' : `The ${length - 1} other files were`;
+  return ` ${others} ignored: the program takes one at a time, so a scene with its textures must be one .glb.`;
+}
 
 /// Anywhere on the page: a browser opens what is dropped on nothing, and the page would be gone. Text may be dropped
 /// where it is typed.
@@ -20,29 +29,31 @@ function takeDrops(send) {
   addEventListener('drop', event => {
     if (!isOurs(event)) return;
     event.preventDefault();
-    send(event.dataTransfer.files[0]);
+    send([...event.dataTransfer.files]);
   });
 }
 
 export function makeUpload(connection) {
   let largest = 0;
-  const send = async file => {
+  const send = async files => {
+    const file = chosenOf(files);
     if (!file) return;
-    if (largest === 0) return say(`${file.name} was not sent: ${reasons[403]}.`);
+    const tell = text => say(text + aboutOthers(files));
+    if (largest === 0) return tell(`${file.name} was not sent: ${reasons[403]}.`);
     if (file.size > largest) {
-      return say(`${file.name} is larger than the ${Math.floor(largest / 1e6)} MB that the program takes.`);
+      return tell(`${file.name} is larger than the ${Math.floor(largest / 1e6)} MB that the program takes.`);
     }
-    say(`${file.name} is on its way.`);
+    tell(`${file.name} is on its way.`);
     try {
       const address = `${connection.address('upload')}&name=${encodeURIComponent(allowed(file.name))}`;
       const {ok, status} = await fetch(address, {method: 'POST', body: file});
-      say(ok ? `${file.name} was sent.` : `${file.name} was not taken: ${reasons[status] ?? `error ${status}`}.`);
+      tell(ok ? `${file.name} was sent.` : `${file.name} was not taken: ${reasons[status] ?? `error ${status}`}.`);
     } catch {
-      say(`${file.name} was not sent: the connection was lost.`);
+      tell(`${file.name} was not sent: the connection was lost.`);
     }
   };
-  const input = make('input', {type: 'file', id: 'upload', accept: types, change: () => {
-    send(input.files[0]);
+  const input = make('input', {type: 'file', id: 'upload', accept: endings.join(), change: () => {
+    send([...input.files]);
     input.value = '';
   }});
   const element = make('div', {className: 'field', hidden: true},

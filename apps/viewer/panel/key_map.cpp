@@ -19,7 +19,7 @@ constexpr std::pair<const char*, const char*> keys[] = {
     {"P", "values of all images under the mouse; again: hide them"},
     {"Tab", "hide or show the panel"},
     {"", ""},
-    {"Ctrl+Z, Ctrl+Shift+Z", "undo, redo"},
+    {"Ctrl+Z, Ctrl+Shift+Z or Ctrl+Y", "undo, redo"},
     {"Ctrl+F", "search all settings"},
     {"Ctrl and a click", "on a slider: type a number"},
     {"?", "this list"},

@@ -73,7 +73,7 @@ void drawHistory(const Drawing& with) {
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!panel.history.canRedo());
-    if (bigButton(with, "redo", "redo", "", "Makes the change again (Ctrl+Shift+Z)")) redo(panel);
+    if (bigButton(with, "redo", "redo", "", "Makes the change again (Ctrl+Shift+Z, Ctrl+Y)")) redo(panel);
     ImGui::EndDisabled();
 }
 

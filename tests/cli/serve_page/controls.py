@@ -21,6 +21,10 @@ def test_controls(browser):
     browser.key('z', 10)
     browser.wait("document.getElementById('field-seed-number').valueAsNumber === 7", 'redo')
     browser.key('z', 2)
+    browser.wait("document.getElementById('field-seed-number').valueAsNumber === 0", 'undo after redo')
+    browser.key('y', 2)
+    browser.wait("document.getElementById('field-seed-number').valueAsNumber === 7", 'redo by Ctrl+Y')
+    browser.key('z', 2)
     type_into(browser, '#field-seed-number', '1234567')
     check(value_of(browser, 'seed') == 1234567, f'a long number becomes {value_of(browser, "seed")}')
     click_on(browser, '[data-key=seed] .reset')
@@ -88,6 +92,18 @@ def test_colors(browser):
     browser.wait(f"{color} !== '#802020'", 'the colour at its brightest')
     click_on(browser, '#undo')
     browser.wait(f"{color} === '{before}'", 'the colour, undone')
+    settle(browser, 'the light as it was')
+
+
+def test_lights(browser):
+    """What is open stays open when another light is added, which stands before it, or removed."""
+    opened = "JSON.stringify([...document.querySelectorAll('.light details')].map(details => details.open))"
+    browser.evaluate("document.querySelector('.light details').open = true")
+    click_on(browser, '[data-request=add_sun]')
+    browser.wait(f"{opened} === '[false,true]'", 'the open light, with a new one')
+    click_on(browser, '.light button[aria-label^=remove]')
+    browser.wait(f"{opened} === '[true]'", 'the open light, alone')
+    browser.evaluate("document.querySelector('.light details').open = false")
     settle(browser, 'the light as it was')
 
 

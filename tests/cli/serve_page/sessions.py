@@ -1,6 +1,5 @@
 """Files that are sent, other pages, lost connections, and a program that is started again."""
 
-import json
 import pathlib
 import time
 
@@ -8,34 +7,52 @@ from browser import check
 from page import box_of, center, click_on, open_page, settle, type_into, value_of
 
 
-def drop(browser, file, selector):
+def drop(browser, selector, *files):
     x, y = center(box_of(browser, selector))
-    data = {'items': [], 'files': [str(file)], 'dragOperationsMask': 1}
+    data = {'items': [], 'files': [str(file) for file in files], 'dragOperationsMask': 1}
     for kind in ('dragEnter', 'dragOver', 'drop'):
         browser.call('Input.dispatchDragEvent', type=kind, x=x, y=y, data=data)
 
 
 def test_upload(browser, folder):
     """Scenes of this device, dropped on the picture and beside it. Undo does not go on into another scene."""
-    before = browser.evaluate("document.getElementById('scene-name').textContent")
     for name, selector, seed in (('dropped', '#stage', 3), ('beside', '#panel-head', 4)):
         type_into(browser, '#field-seed-number', str(seed))
         browser.wait("!document.getElementById('undo').disabled", f'{name}: a step of undo')
         file = pathlib.Path(folder) / f'{name}.obj'
         file.write_text('v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n')
-        drop(browser, file, selector)
+        texture = pathlib.Path(folder) / f'{name}.png'
+        texture.write_bytes(b'')
+        drop(browser, selector, texture, file)
+        said = "document.getElementById('page-message').textContent"
+        browser.wait(f"{said}.includes('{file.name}') && {said}.includes('The other file was ignored')", 'both files')
         browser.wait(f"document.getElementById('scene-name').textContent.includes('{name}')", f'the scene {name}')
         check(browser.evaluate("document.getElementById('undo').disabled"), 'undo goes on into another scene')
         settle(browser, name)
         browser.evaluate("document.getElementById('dismiss').click()")  # what was opened, above the seed
         click_on(browser, '[data-key=seed] .reset')
         browser.wait("document.getElementById('field-seed-number').valueAsNumber === 0", 'the default seed')
-    browser.evaluate('''(() => {
-      const select = document.getElementById('open-scene');
-      select.value = [...select.options].map(o => o.value).find(value => value === 'builtin:cornell');
-      select.dispatchEvent(new Event('change'));
-    })()''')
-    browser.wait(f"document.getElementById('scene-name').textContent === {json.dumps(before)}", 'the first scene')
+
+
+def test_open_scene(browser):
+    """A choice in the list opens a scene at once; keys open none on the way to another one."""
+    name = "document.getElementById('scene-name').textContent"
+    select = "document.getElementById('open-scene')"
+    browser.evaluate(f"{select}.value = 'builtin:lab-mirror'; {select}.dispatchEvent(new Event('change'))")
+    browser.wait(f"{name}.includes('lab-mirror')", 'the chosen scene')
+    settle(browser, 'the chosen scene')
+    browser.evaluate(f"{select}.focus()")
+    places = f"[{select}.selectedIndex, [...{select}.options].findIndex(o => o.value === 'builtin:cornell')]"
+    at, cornell = browser.evaluate(places)
+    for key in (cornell - at + 1) * ['ArrowDown'] + ['ArrowUp']:
+        browser.key(key)
+    check(browser.evaluate(places) == [cornell, cornell], f'keys stop at {browser.evaluate(places)}')
+    browser.wait("!document.getElementById('open-scene-note').hidden", 'the note how to open it')
+    time.sleep(0.3)
+    check('lab-mirror' in browser.evaluate(name), 'keys open scenes on the way')
+    browser.key('Enter')
+    browser.wait(f"{name} === 'cornell'", 'the first scene')
+    check(browser.evaluate(f"{select}.selectedIndex") == 0, 'the list does not go back to its start')
     settle(browser, 'the first scene')
 
 
@@ -97,6 +114,6 @@ def test_restart(browser, server, relay):
                  'the page does not say where to go')
     open_page(browser, relay.address())
     check(browser.evaluate("!document.body.classList.contains('lost')"), 'the new address does not work')
-    drop(browser, server.state, '#panel-head')
+    drop(browser, '#panel-head', server.state)
     browser.wait("document.getElementById('page-message').textContent.includes('without --uploads')",
                  'the page does not say that no file is taken')
