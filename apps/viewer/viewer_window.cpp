@@ -25,6 +25,9 @@ using studio::Request;
 
 constexpr double idleSeconds = 1.0;            ///< longest wait for an event
 constexpr double shortestFrame = 1.0 / 120.0;  ///< seconds between two pictures of the window
+constexpr double handSeconds = 0.5;            ///< after an event, pictures follow as fast as they can
+constexpr double cpuPeriod = 2.0;              ///< on CPUs, as a multiple of the time that drawing takes
+constexpr double longestPeriod = 0.25;
 constexpr double longestStep = 0.1;  ///< maximum seconds that a held key moves the camera per picture
 constexpr int restlessPictures = 4;  ///< drawn after the last event, until the panel has settled
 
@@ -86,13 +89,16 @@ void ViewerWindow::noteRange() {
 
 void ViewerWindow::run(studio::Studio& studio) {
     const uint64_t listener = studio.addListener([&] { window_.wake(); });
-    auto last = Clock::now();
+    auto last = Clock::now(), touched = last;
+    double period = shortestFrame;
     int restless = restlessPictures;
     while (!window_.closed() && !studio.hasEnded()) {
-        const double due = shortestFrame - secondsSince(last);
-        if (window_.poll(restless > 0 ? std::max(due, 0.0) : idleSeconds)) restless = restlessPictures;
-        if (!window_.input().empty() || hasNews(studio)) restless = restlessPictures;
-        if (restless == 0 || secondsSince(last) < shortestFrame) continue;
+        const double due = period - secondsSince(last);
+        const bool hasEvents = window_.poll(restless > 0 ? std::max(due, 0.0) : idleSeconds);
+        if (hasEvents || !window_.input().empty()) touched = Clock::now();
+        if (touched >= last || hasNews(studio)) restless = restlessPictures;
+        if (secondsSince(touched) < handSeconds) period = shortestFrame;
+        if (restless == 0 || secondsSince(last) < period) continue;
         const double seconds = std::min(secondsSince(std::exchange(last, Clock::now())), longestStep);
         try {
             draw(studio, seconds);
@@ -101,6 +107,7 @@ void ViewerWindow::run(studio::Studio& studio) {
             screen_.reset();
             screen_ = std::make_unique<Screen>(window_, options_);
         }
+        period = periodAfter(secondsSince(last));
         --restless;
         if (panel_.passPreview.isAboutToShow()) restless = std::max(restless, 1);
     }
@@ -118,6 +125,13 @@ void ViewerWindow::finish() {
     screen_->device.waitIdle();
     if (const uint64_t messages = screen_->device.validationMessages(); messages > 0)
         throw Error(fmt::format("the validation layer reported {} messages about the window", messages));
+}
+
+/// From the start of one picture to that of the next. On CPUs, the window takes time from the renderer: while
+/// no hand waits for it, it leaves half of it.
+double ViewerWindow::periodAfter(double drawSeconds) const {
+    if (!screen_->device.isCpu()) return shortestFrame;
+    return std::clamp(cpuPeriod * drawSeconds, shortestFrame, longestPeriod);
 }
 
 bool ViewerWindow::hasNews(const studio::Session& session) {

@@ -37,6 +37,7 @@ class ViewerWindow {
         Display display;
     };
 
+    double periodAfter(double drawSeconds) const;
     bool hasNews(const studio::Session& session);
     void draw(studio::Session& session, double seconds);
     void takeState();
