@@ -1,3 +1,4 @@
+import builtins
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, NamedTuple, overload
@@ -11,7 +12,8 @@ __all__: list[str]
 _Image = NDArray[np.float32]
 _Matrix = NDArray[np.float64]
 _Method = Literal["svgf", "atrous", "temporal", "bilateral", "visibility"]
-_StillMethod = Literal["svgf", "atrous", "temporal", "bilateral", "kpcn"]
+_StillMethod = Literal["svgf", "atrous", "temporal", "bilateral", "visibility", "kpcn"]
+_ShotMethod = Literal["svgf", "atrous", "temporal", "bilateral", "kpcn"]
 _Output = Literal["color", "radiance", "specular"]
 _Path = str | PathLike[str]
 
@@ -21,7 +23,7 @@ class Error(RuntimeError):
 
 class Parameter(NamedTuple):
     name: str
-    type: type[bool] | type[int] | type[float]
+    type: builtins.type[bool] | builtins.type[int] | builtins.type[float]
     default: bool | int | float
     minimum: float
     maximum: float
@@ -196,7 +198,7 @@ def denoise_shot(
     input: _Path,
     output: _Path,
     *,
-    denoiser: _StillMethod | None = None,
+    denoiser: _ShotMethod | None = None,
     preset: str | None = None,
     parameters: Mapping[str, float] | None = None,
     weights: _Path | None = None,

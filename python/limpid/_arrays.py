@@ -37,9 +37,28 @@ def image(name, value, components, size=None):
     if array.size == 0:
         raise ValueError(f"{name}: the shape is {np.shape(value)}, there are no pixels")
     array = array.astype(np.float32, copy=False)
-    if array.strides[2] != 4 or min(array.strides) <= 0:
+    # Strides along axes of length 1 mean nothing.
+    forwards = all(stride > 0 for stride, length in zip(array.strides, array.shape) if length > 1)
+    adjacent = array.shape[2] == 1 or array.strides[2] == 4
+    if not (forwards and adjacent):
         array = array.copy(order="C")
     return array
+
+
+def setting(value):
+    """Formats a parameter's value as the command line expects it."""
+    if isinstance(value, (bool, np.bool_)):
+        return "on" if value else "off"
+    if isinstance(value, (float, np.floating)) and float(value).is_integer() and abs(value) < 2**53:
+        return str(int(value))  # "4.0" is no whole number there
+    return str(value)
+
+
+def number(name, value, least, most):
+    """Returns an integer from `least` to `most` as int."""
+    if not isinstance(value, (int, np.integer)) or not least <= value <= most:
+        raise ValueError(f"{name}: {value!r} is not a whole number from {least} to {most}")
+    return int(value)
 
 
 def identifiers(name, value, size):

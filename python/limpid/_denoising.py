@@ -1,11 +1,11 @@
 """Denoising of stills and sequences."""
 
-import atexit
 from typing import NamedTuple
 
 import numpy as np
 
 from limpid import _arrays, _camera, _denoise
+from limpid._devices import SharedDevices, handle_of, own
 
 # The accepted component counts of images that may have more components than are read.
 _COMPONENTS = {
@@ -63,7 +63,8 @@ class Device:
     """
 
     def __init__(self, select=None, *, validation=False):
-        self._handle = _denoise.Device("" if select is None else str(select), bool(validation))
+        self._select = "" if select is None else str(select)
+        own(self, _denoise.Device(self._select, bool(validation)))
 
     def __repr__(self):
         return f"<limpid.Device {self.name!r}>"
@@ -86,22 +87,22 @@ class Device:
         """Loads bytes that pipeline_cache() returned in an earlier run, so that the driver need not compile again.
         Call it before the first denoiser is made. Bytes from another device or driver, and damaged ones, are
         ignored."""
-        self._handle.load_pipeline_cache(bytes(data))
+        self._handle.load_pipeline_cache(bytes(memoryview(data)))  # bytes(5) would be five zeros
 
 
-_devices = {}
-# Drivers may be unloaded before the interpreter's last objects are destroyed.
-atexit.register(_devices.clear)
+_devices = SharedDevices(Device)
+
+
+def text_of(choice):
+    """Returns the text that chooses a device. For a Device that is what it was made with: several may have its name."""
+    if isinstance(choice, Device):
+        return choice._select
+    return "" if choice is None else str(choice)
 
 
 def _device_of(choice):
     """Returns `choice` if it is a Device, else a device that is shared by all calls with the same text."""
-    if isinstance(choice, Device):
-        return choice
-    key = "" if choice is None else str(choice)
-    if key not in _devices:
-        _devices[key] = Device(key)
-    return _devices[key]
+    return choice if isinstance(choice, Device) else _devices.get(text_of(choice))
 
 
 class Denoiser:
@@ -165,10 +166,9 @@ class Denoiser:
         motion_components = (3, 4) if motion_depth == "distance" else (2, 3, 4)
         self._components = dict(_COMPONENTS, normal=normal_components, previous_normal=normal_components,
                                 motion=motion_components, reflection_motion=motion_components)
-        if method == "visibility":
-            self._components["radiance"] = (1, 3, 4)
+        self._components["radiance"] = _radiance_components(method)
         self._camera = None  # of the previous frame
-        self._handle = _denoise.Denoiser(self._device._handle, description)
+        own(self, _denoise.Denoiser(handle_of(self._device), description))
         for name, value in (parameters or {}).items():
             self.set(name, value)
 
@@ -313,6 +313,10 @@ def _network():
     return module
 
 
+def _radiance_components(method):
+    return (1, 3, 4) if method == "visibility" else _COMPONENTS["radiance"]
+
+
 def _check_side(name, value):
     if not isinstance(value, (int, np.integer)) or not 1 <= value <= 32768:
         raise ValueError(f"{name}: {value!r} is not a number of pixels from 1 to 32768")
@@ -343,7 +347,7 @@ def denoise(radiance, normal, depth, *, specular=None, emission=None, albedo=Non
         network = _network().Network(options.pop("weights", None), device=device,
                                      parameters=options.pop("parameters", None))
         return network.denoise(radiance, normal, depth, specular=specular, emission=emission, albedo=albedo, **options)
-    size = _arrays.image("radiance", radiance, _COMPONENTS["radiance"]).shape
+    size = _arrays.image("radiance", radiance, _radiance_components(method)).shape
     denoiser = Denoiser(size[1], size[0], method, device=device, signals=1 if specular is None else 2, **options)
     return denoiser.denoise(radiance, normal, depth, specular=specular, emission=emission, albedo=albedo,
                             albedo_specular=albedo_specular, id=id, view=view, projection=projection, jitter=jitter,

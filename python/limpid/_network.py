@@ -3,7 +3,8 @@
 import os
 
 from limpid import _arrays
-from limpid._denoising import Device, parameter_value, parameters_of
+from limpid._denoising import parameter_value, parameters_of, text_of
+from limpid._devices import own
 
 try:
     from limpid import _neural
@@ -41,8 +42,7 @@ class Network:
     """
 
     def __init__(self, weights=None, *, device=None, parameters=None):
-        select = device.name if isinstance(device, Device) else "" if device is None else str(device)
-        self._handle = _module().Network(select, "" if weights is None else os.fspath(weights))
+        own(self, _module().Network(text_of(device), "" if weights is None else os.fspath(weights)))
         for name, value in (parameters or {}).items():
             self.set(name, value)
 

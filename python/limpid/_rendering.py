@@ -1,20 +1,15 @@
 """Rendering and comparing pictures. Uses the extension module limpid._renderer."""
 
-import atexit
-
 import numpy as np
 
 from limpid import _arrays, _camera
-from limpid._denoising import Device
+from limpid._denoising import text_of
+from limpid._devices import SharedDevices, handle_of, own
 
 try:
     from limpid import _renderer
 except ImportError as error:
     _renderer, _missing = None, error
-
-_devices = {}
-# Drivers may be unloaded before the interpreter's last objects are destroyed.
-atexit.register(_devices.clear)
 
 
 def _module():
@@ -24,11 +19,12 @@ def _module():
     return _renderer
 
 
-def _device_of(choice):
-    key = choice.name if isinstance(choice, Device) else "" if choice is None else str(choice)
-    if key not in _devices:
-        _devices[key] = _module().Device(key)
-    return _devices[key]
+class _Device:
+    def __init__(self, select):
+        own(self, _module().Device(select))
+
+
+_devices = SharedDevices(_Device)
 
 
 def compare(test, reference, *, exposure="auto"):
@@ -64,7 +60,8 @@ def render(scene, width, height, spp=64, **options):
 
     Options:
     seed: of the random numbers; default: 0. The same seed gives the same picture on the same device.
-    denoiser: None, "temporal", "atrous", "svgf" or "kpcn": denoises the picture that is returned as "color".
+    denoiser: None, "temporal", "atrous", "svgf", "bilateral" or "kpcn": denoises the picture that is returned as
+        "color".
     parameters: a dict of names and values, such as {"pathtrace.max_depth": 4}; `limpid info` lists them.
     device: as in limpid.Denoiser.
     environment: path of an equirectangular .hdr or .exr.
@@ -107,6 +104,7 @@ def render_sequence(scene, width, height, frames, spp=1, *, first=0, fps=30.0, a
     camera_path: "orbit", "dolly", "shake", or a JSON file (docs/animation.md).
     options: those of render(). A denoiser with a history keeps it from frame to frame.
     """
+    first = _arrays.number("first", first, 0, 1000000)
     renderer = _Renderer(scene, width, height, spp, default_jitter="off", fps=fps, frames=frames, animation=animation,
                          camera_path=camera_path, **options)
     return (renderer.render(frame) for frame in range(first, frames))
@@ -123,20 +121,20 @@ class _Renderer:
     def __init__(self, scene, width, height, spp, *, default_jitter, seed=0, denoiser=None, parameters=None,
                  device=None, environment=None, camera=None, eye=None, target=None, fov=None, jitter=None,
                  weights=None, asset_root=None, fps=30.0, frames=1, animation="none", camera_path=None):
-        for name, value, most in (("width", width, 65535), ("height", height, 65535), ("spp", spp, 1 << 24),
-                                  ("frames", frames, 1000000)):
-            if not isinstance(value, (int, np.integer)) or not 1 <= value <= most:
-                raise ValueError(f"{name}: {value!r} is not a number from 1 to {most}")
+        for name, value, least, most in (("width", width, 1, 65535), ("height", height, 1, 65535),
+                                         ("spp", spp, 1, 1 << 24), ("frames", frames, 1, 1000000),
+                                         ("seed", seed, 0, 2**32 - 1)):
+            _arrays.number(name, value, least, most)
         if jitter is None:
             jitter = "" if denoiser else default_jitter
         options = _module().Options(
             scene=str(scene), width=width, height=height, samples=spp, seed=seed, denoiser=_text(denoiser),
-            assignments=[f"{name}={_text(value)}" for name, value in (parameters or {}).items()],
+            assignments=[f"{name}={_arrays.setting(value)}" for name, value in (parameters or {}).items()],
             environment=_text(environment), camera=_text(camera), eye=_vector("eye", eye),
-            target=_vector("target", target), fov=0.0 if fov is None else fov, jitter=jitter, weights=_text(weights),
-            asset_root=_text(asset_root), fps=fps, frames=frames, animation=_text(animation),
-            camera_path=_text(camera_path))
-        self._handle = _module().Renderer(_device_of(device), options)
+            target=_vector("target", target), fov=0.0 if fov is None else float(fov), jitter=str(jitter),
+            weights=_text(weights), asset_root=_text(asset_root), fps=float(fps), frames=frames,
+            animation=_text(animation), camera_path=_text(camera_path))
+        own(self, _module().Renderer(handle_of(_devices.get(text_of(device))), options))
 
     def render(self, frame):
         layers, camera = self._handle.render(frame)
@@ -147,9 +145,6 @@ class _Renderer:
 
 
 def _text(value):
-    """Formats a value as the command line expects it."""
-    if isinstance(value, bool):
-        return "on" if value else "off"
     return "" if value is None else str(value)
 
 

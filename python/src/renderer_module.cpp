@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -132,11 +133,34 @@ py::dict cameraDict(const CameraParams& camera) {
     return dict;
 }
 
+/// Lets Python handle signals, such as Ctrl+C, ten times a second. For calls without the GIL.
+class SignalCheck {
+  public:
+    void operator()() {
+        const auto now = std::chrono::steady_clock::now();
+        if (now < next_) return;
+        next_ = now + std::chrono::milliseconds(100);
+        const py::gil_scoped_acquire acquire;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now();
+};
+
+/// Destroys a renderer without the GIL: it may have to wait for another one that uses the device.
+struct DestroyUnlocked {
+    void operator()(SceneRenderer* renderer) const {
+        const py::gil_scoped_release release;
+        delete renderer;
+    }
+};
+
 /// Returns the layers of a frame by name, and its camera.
 py::tuple render(SceneRenderer& renderer, uint64_t frame) {
     const auto [layers, camera] = [&] {
         const py::gil_scoped_release release;
-        return renderer.render(frame);
+        return renderer.render(frame, SignalCheck());
     }();
     return py::make_tuple(arraysOf(layers), cameraDict(camera));
 }
@@ -187,7 +211,7 @@ PYBIND11_MODULE(_renderer, m) {
     py::class_<RenderDevice, std::shared_ptr<RenderDevice>>(m, "Device")
         .def(py::init<const std::string&>(), Unlocked());
     py::class_<RenderOptions>(m, "Options").def(py::init(&optionsOf));
-    py::class_<SceneRenderer>(m, "Renderer")
+    py::class_<SceneRenderer, std::unique_ptr<SceneRenderer, DestroyUnlocked>>(m, "Renderer")
         .def(py::init<std::shared_ptr<RenderDevice>, const RenderOptions&>(), Unlocked())
         .def("render", render);
 }

@@ -89,22 +89,23 @@ SceneRenderer::~SceneRenderer() {
     gpuScene_.reset();
 }
 
-RenderedLayers SceneRenderer::renderLayers(Moment moment) {
+RenderedLayers SceneRenderer::renderLayers(Moment moment, const std::function<void()>& between) {
     if (settings_.pipeline.accumulates()) {
         // Frames may come in any order, so each has a mean of its own.
         renderer_->begin(std::move(moment));
-        while (renderer_->launch()) continue;
+        while (renderer_->launch()) between();
     } else {
         renderer_->render(std::move(moment));
     }
     return renderer_->download();
 }
 
-std::pair<image::LayeredImage, CameraParams> SceneRenderer::render(uint64_t frame) {
+std::pair<image::LayeredImage, CameraParams> SceneRenderer::render(uint64_t frame,
+                                                                   const std::function<void()>& between) {
     const std::lock_guard lock(device_->mutex);
     Moment moment = sequence_->moment(frame, settings_.extent);
     const CameraParams camera = moment.camera;
-    const RenderedLayers layers = renderLayers(std::move(moment));
+    const RenderedLayers layers = renderLayers(std::move(moment), between);
     return {toLayeredImage(layers, settings_.pipeline.layers(), image::Storage::Float), camera};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -51,11 +52,11 @@ class SceneRenderer {
     ~SceneRenderer();
 
     /// Renders a frame and returns all its layers and the camera. With a denoiser, frames must be rendered in
-    /// order.
-    std::pair<image::LayeredImage, CameraParams> render(uint64_t frame);
+    /// order. `between` is called between launches; what it throws ends the frame.
+    std::pair<image::LayeredImage, CameraParams> render(uint64_t frame, const std::function<void()>& between);
 
   private:
-    RenderedLayers renderLayers(Moment moment);
+    RenderedLayers renderLayers(Moment moment, const std::function<void()>& between);
 
     std::shared_ptr<RenderDevice> device_;
     RenderSettings settings_;

@@ -1,31 +1,24 @@
-"""Tests the package: shapes, errors, denoising, comparing, rendering. LIMPID_TEST_DEVICE names the device
-(default: cpu)."""
+"""Tests the package: shapes, errors, denoising; with the tests of test_limpid_rendering.py, which it runs, too.
+LIMPID_TEST_DEVICE names the device (default: cpu)."""
 
+import gc
 import os
+import signal
 import subprocess
 import sys
 import threading
+import time
 import unittest
 
 import numpy as np
 
 import limpid
+from limpid import _arrays, _denoising, _devices
+from fixture import device, mse
+# In one process: importing takes longer than many of the tests.
+from test_limpid_rendering import CameraTest, CompareTest, NetworkTest, RenderTest  # noqa: F401
 
 WIDTH, HEIGHT, FRAMES, FOV = 64, 48, 12, 60.0
-
-
-def device():
-    name = os.environ.get("LIMPID_TEST_DEVICE", "cpu")
-    if name not in device.made:
-        device.made[name] = limpid.Device(name)
-    return device.made[name]
-
-
-device.made = {}
-
-
-def tearDownModule():
-    device.made.clear()
 
 
 def wall(eye_x):
@@ -44,10 +37,6 @@ def wall(eye_x):
 
 def wall_view(eye_x):
     return limpid.look_at((eye_x, 0, 0), (eye_x, 0, -1))
-
-
-def mse(a, b):
-    return float(np.mean((a - b) ** 2))
 
 
 def gain(clean, noisy, truth):
@@ -92,6 +81,47 @@ class DeviceTest(unittest.TestCase):
         self.assertEqual(caught.exception.code, "unsupported")
         self.assertIn("no such device", str(caught.exception))
         self.assertIsInstance(caught.exception, RuntimeError)
+
+    def test_threads_share_a_device(self):
+        made = []
+
+        def make(text):
+            time.sleep(0.02)
+            made.append(text)
+            return object()
+
+        devices, found = _devices.SharedDevices(make), []
+        threads = [threading.Thread(target=lambda: found.append(devices.get("cpu"))) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual((made, len(set(found)), len(found)), (["cpu"], 1, 3))
+
+    def test_other_modules_open_the_device_that_was_chosen(self):
+        # By its name they would open the first of several that are alike.
+        self.assertEqual(_denoising.text_of(device()), os.environ.get("LIMPID_TEST_DEVICE", "cpu"))
+
+    @unittest.skipUnless(hasattr(os, "fork"), "needs fork")
+    def test_a_forked_process_refuses_what_its_parent_opened(self):
+        denoiser = limpid.Denoiser(8, 8, "temporal", device=device())
+        uses = denoiser.reset, lambda: limpid.Denoiser(8, 8, device=device())
+        child = os.fork()
+        if child == 0:
+            try:
+                signal.alarm(60)
+                refused = 0
+                for use in uses:
+                    try:
+                        use()
+                    except limpid.Error as error:
+                        refused += "forked" in str(error)
+                denoiser = uses = None
+                gc.collect()  # destroying the denoiser would wait for ever
+                os._exit(refused)
+            finally:
+                os._exit(99)
+        self.assertEqual(os.waitpid(child, 0)[1], 2 << 8, "the exit status is 2")
 
     def test_pipeline_cache_comes_back(self):
         limpid.Denoiser(8, 8, "temporal", device=device())
@@ -175,6 +205,15 @@ class ShapeTest(unittest.TestCase):
         inputs["normal"] = np.broadcast_to(np.array((0, 0, 1), np.float32), (HEIGHT, WIDTH, 3))
         np.testing.assert_allclose(self.denoiser.denoise(**inputs)[inputs["depth"] > 0], 0.5, atol=1e-3)
 
+    def test_only_what_the_library_cannot_read_is_copied(self):
+        depth = np.ones((4, 6), np.float32)
+        for array in depth, depth[::2, 1:], np.ones((1, 6), np.float32):
+            self.assertTrue(np.shares_memory(_arrays.image("depth", array, (1,)), array))
+        for array in depth[::-1], np.broadcast_to(np.float32(1), (4, 6)):
+            copied = _arrays.image("depth", array, (1,))
+            self.assertTrue(copied.flags.c_contiguous)
+            np.testing.assert_array_equal(copied[..., 0], array)
+
     def test_one_pixel_and_odd_sizes(self):
         for height, width in ((1, 1), (1, 7), (5, 1), (3, 13)):
             radiance = np.full((height, width, 3), 0.25, np.float32)
@@ -249,6 +288,7 @@ class DenoiseTest(unittest.TestCase):
             clean = denoiser.denoise(noisy, normal, depth, view=wall_view(0.0),
                                      projection=limpid.perspective(FOV, WIDTH / HEIGHT))
         self.assertLess(mse(clean[depth > 0, 0], truth[depth > 0]), 0.05 * mse(noisy[depth > 0], truth[depth > 0]))
+        self.assertEqual(limpid.denoise(noisy, normal, depth, method="visibility", device=device()).shape, clean.shape)
 
     def test_previous_camera_is_remembered(self):
         sequence = Sequence()
@@ -398,208 +438,6 @@ class DenoiseTest(unittest.TestCase):
         done.set()
         thread.join()
         self.assertGreater(during, 5)
-
-
-class NetworkTest(unittest.TestCase):
-    DEVICE = os.environ.get("LIMPID_TEST_DEVICE", "cpu")
-
-    @classmethod
-    def setUpClass(cls):
-        cls.noisy = limpid.render("builtin:cornell", 24, 16, spp=16, device=device())
-        names = ("diffuse", "specular", "emission", "albedo", "normal", "depth", "diffuse_variance",
-                 "specular_variance", "albedo_variance", "normal_variance", "depth_variance")
-        cls.inputs = {name: cls.noisy[name] for name in names}
-        cls.inputs["samples"] = 16
-        try:
-            cls.network = limpid.Network(device=cls.DEVICE)
-        except ImportError as error:  # built without oneDNN
-            raise unittest.SkipTest(str(error))
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.network = None
-
-    def test_is_what_render_does_itself(self):
-        clean = self.network.denoise(**self.inputs)
-        self.assertEqual((clean.shape, clean.dtype), ((16, 24, 3), np.float32))
-        weights = os.path.join(os.path.dirname(__file__), "..", "..", "weights", "kpcn.safetensors")
-        own = limpid.render("builtin:cornell", 24, 16, spp=16, device=device(), denoiser="kpcn", weights=weights)
-        np.testing.assert_allclose(clean, own["color"], rtol=2e-3, atol=1e-4)
-
-    def test_denoise_has_it_as_a_method(self):
-        inputs = dict(self.inputs)
-        light = inputs.pop("diffuse")
-        clean = limpid.denoise(light, **inputs, method="kpcn", device=device(), parameters={"kpcn.levels": 0},
-                               view=self.noisy["view"], projection=self.noisy["projection"])
-        self.network.set("kpcn.levels", 0)
-        np.testing.assert_array_equal(clean, self.network.denoise(**self.inputs))
-        self.network.set("kpcn.levels", self.network.parameters()["kpcn.levels"].default)
-        self.assertGreater(mse(clean, self.network.denoise(**self.inputs)), 0.0)
-        with self.assertRaises(ValueError):
-            limpid.denoise(light, **inputs, method="kpcn", device=device(), outputs=("color",))
-
-    def test_parameters_are_the_networks(self):
-        self.assertEqual(limpid.parameters("kpcn"), self.network.parameters())
-        self.assertEqual(self.network.get("kpcn.tile"), 512)
-        for name, value in (("svgf.alpha", 0.5), ("kpcn.tile", 0), ("kpcn.errors", float("nan"))):
-            with self.assertRaises(limpid.Error) as caught:
-                self.network.set(name, value)
-            self.assertEqual(caught.exception.code, "invalid_argument")
-            self.assertIn(name, str(caught.exception))
-
-    def test_wrong_arguments_are_named(self):
-        flat = self.inputs["depth"]
-        for name, value in (("diffuse", flat), ("normal", flat), ("depth", self.inputs["normal"]), ("normal", None),
-                            ("specular_variance", None), ("diffuse_variance", flat[1:]), ("samples", 0)):
-            with self.subTest(name), self.assertRaises(ValueError) as caught:
-                self.network.denoise(**{**self.inputs, name: value})
-            self.assertTrue(str(caught.exception).startswith(name + ":"), str(caught.exception))
-        with self.assertRaises(limpid.Error) as caught:
-            self.network.denoise(**{**self.inputs, "diffuse": np.full_like(self.inputs["diffuse"], np.nan)})
-        self.assertEqual(caught.exception.code, "invalid_argument")
-
-    def test_weights_that_are_missing_are_named(self):
-        with self.assertRaises(limpid.Error) as caught:
-            limpid.Network("there is no such file", device=self.DEVICE)
-        self.assertIn("there is no such file", str(caught.exception))
-
-
-class CameraTest(unittest.TestCase):
-    def test_look_at_puts_the_target_in_front(self):
-        view = limpid.look_at((1, 2, 3), (1, 2, -1))
-        np.testing.assert_allclose(view @ (1, 2, 3, 1), (0, 0, 0, 1), atol=1e-12)
-        np.testing.assert_allclose(view @ (2, 3, -1, 1), (1, 1, -4, 1), atol=1e-12)
-        with self.assertRaises(ValueError):
-            limpid.look_at((0, 0, 0), (0, 1, 0))
-
-    def test_perspective_is_vulkans(self):
-        for far in (100.0, np.inf):
-            projection = limpid.perspective(90, 2, near=0.5, far=far)
-            near = projection @ (1, 0.5, -0.5, 1)
-            np.testing.assert_allclose(near / near[3], (1, -1, 0, 1), atol=1e-12)
-            end = projection @ (0, 0, -min(far, 1e12), 1)
-            self.assertAlmostEqual(end[2] / end[3], 1, places=9)
-        self.assertGreater(limpid.perspective(90, 1, clip_y="up")[1, 1], 0)
-        with self.assertRaises(ValueError):
-            limpid.perspective(180, 1)
-
-
-class CompareTest(unittest.TestCase):
-    def setUp(self):
-        self.picture = np.random.default_rng(5).random((32, 40, 3), np.float32)
-
-    def test_equal_pictures(self):
-        result = limpid.compare(self.picture, self.picture)
-        self.assertEqual(result["psnr"], np.inf)
-        self.assertAlmostEqual(result["ssim"], 1.0, places=6)
-        self.assertEqual((result["flip"], result["relmse"], result["invalid_pixels"]), (0.0, 0.0, 0))
-
-    def test_known_answers(self):
-        black, grey = np.zeros((16, 16, 3)), np.full((16, 16, 3), 0.5)
-        result = limpid.compare(grey, black, exposure=0)
-        shown = 1.055 * 0.5 ** (1 / 2.4) - 0.055  # sRGB
-        self.assertAlmostEqual(result["psnr"], -20 * np.log10(shown), places=4)
-        self.assertAlmostEqual(result["relmse"], 0.25 / 0.01, places=3)
-        green, blue = black + (0, 1, 0), black + (0, 0, 1)
-        self.assertAlmostEqual(limpid.compare(green, blue, exposure=0)["flip"], 1.0, places=3)
-
-    def test_wrong_arguments(self):
-        for test, reference, word in ((self.picture[1:], self.picture, "test:"), (self.picture, self.picture[..., 0],
-                                                                                  "reference:"),
-                                      (self.picture.astype(np.uint8), self.picture, "test:")):
-            with self.assertRaises(ValueError) as caught:
-                limpid.compare(test, reference)
-            self.assertTrue(str(caught.exception).startswith(word), str(caught.exception))
-        with self.assertRaises(ValueError):
-            limpid.compare(self.picture, self.picture, exposure=100)
-        invalid = self.picture.copy()
-        invalid[0, 0, 0] = np.nan
-        self.assertEqual(limpid.compare(invalid, self.picture)["invalid_pixels"], 1)
-        with self.assertRaises(limpid.Error):
-            limpid.compare(self.picture, invalid)
-
-
-class RenderTest(unittest.TestCase):
-    def render(self, **more):
-        return limpid.render("builtin:cornell", 32, 32, **{"spp": 4, "device": device(), **more})
-
-    def test_layers_have_their_keys_shapes_and_types(self):
-        layers = self.render()
-        three = {"color", "diffuse", "specular", "emission", "albedo", "albedo_specular", "normal", "previous_normal",
-                 "motion", "reflection_motion"}
-        one = {"depth", "id", "roughness", "hit_distance", "diffuse_variance", "specular_variance", "albedo_variance", "normal_variance",
-               "depth_variance"}
-        self.assertEqual(set(layers), three | one | {"view", "projection"})
-        for name, value in layers.items():
-            shape = (4, 4) if name in ("view", "projection") else (32, 32, 3) if name in three else (32, 32)
-            self.assertEqual(value.shape, shape, name)
-        self.assertEqual((layers["id"].dtype, layers["color"].dtype), (np.uint32, np.float32))
-        np.testing.assert_allclose(layers["color"], layers["diffuse"] + layers["specular"] + layers["emission"],
-                                   rtol=1e-5, atol=1e-6)
-        self.assertGreater(layers["color"].mean(), 0)
-
-    def test_a_seed_decides_the_noise(self):
-        first, again, other = self.render(seed=3), self.render(seed=3), self.render(seed=4)
-        for name in first:
-            np.testing.assert_array_equal(first[name], again[name], err_msg=name)
-        self.assertGreater(mse(first["color"], other["color"]), 0)
-
-    def test_matrices_are_the_cameras(self):
-        # Reprojecting the pixels with depth must give their positions back.
-        layers = self.render(spp=1)
-        to_world = np.linalg.inv(layers["projection"] @ layers["view"])
-        eye = np.linalg.inv(layers["view"])[:3, 3]
-        x, y = np.meshgrid(2 * (np.arange(32) + 0.5) / 32 - 1, 2 * (np.arange(32) + 0.5) / 32 - 1)
-        points = np.stack([x, y, np.full_like(x, 0.5), np.ones_like(x)], axis=2) @ to_world.T
-        ray = points[..., :3] / points[..., 3:] - eye
-        ray /= np.linalg.norm(ray, axis=2, keepdims=True)
-        hits = eye + layers["depth"][..., None] * ray
-        floor = (layers["normal"][..., 1] > 0.99) & (y > 0.8)
-        self.assertGreater(floor.sum(), 10)
-        np.testing.assert_allclose(hits[floor][:, 1], 0, atol=2e-3)
-
-    def test_options_reach_the_renderer(self):
-        dark = self.render(parameters={"pathtrace.max_depth": 0})
-        self.assertLess(dark["color"].mean(), self.render()["color"].mean())
-        clean = self.render(denoiser="svgf", spp=1)
-        self.assertLess(np.abs(np.diff(clean["color"] - clean["emission"], axis=0)).mean(),
-                        np.abs(np.diff(clean["diffuse"] + clean["specular"], axis=0)).mean())
-        aside = self.render(eye=(0.2, 0.27, 0.5), target=(0.27, 0.27, 0), fov=50, spp=1)
-        np.testing.assert_allclose(np.linalg.inv(aside["view"])[:3, 3], (0.2, 0.27, 0.5), atol=1e-5)
-
-    def test_wrong_arguments(self):
-        for more, code in (({"denoiser": "nlm"}, "invalid_argument"), ({"camera": "nobody"}, "invalid_argument"),
-                           ({"parameters": {"pathtrace.no": 1}}, "invalid_argument"),
-                           ({"environment": "no-such-file.hdr"}, "unreadable"),
-                           ({"jitter": "some"}, "invalid_argument")):
-            with self.assertRaises(limpid.Error, msg=str(more)) as caught:
-                self.render(**more)
-            self.assertEqual(caught.exception.code, code)
-        with self.assertRaises(limpid.Error) as caught:
-            limpid.render("no-such-file.glb", 8, 8, device=device())
-        self.assertIn("no-such-file.glb", str(caught.exception))
-        with self.assertRaises(ValueError):
-            self.render(spp=0)
-        with self.assertRaises(TypeError):
-            self.render(samples=4)
-
-    def test_rendered_sequence_is_denoised(self):
-        arguments = "builtin:cornell-moving", 48, 48
-        truth = list(limpid.render_sequence(*arguments, frames=6, spp=128, device=device(), seed=9))[-1]["color"]
-        denoiser = limpid.Denoiser(48, 48, device=device(), signals=2, motion_depth="distance")
-        for f in limpid.render_sequence(*arguments, frames=6, device=device()):
-            clean = denoiser.denoise(
-                f["diffuse"], f["normal"], f["depth"], specular=f["specular"], emission=f["emission"],
-                albedo=f["albedo"], albedo_specular=f["albedo_specular"], motion=f["motion"],
-                previous_normal=f["previous_normal"], id=f["id"], view=f["view"], projection=f["projection"])
-        self.assertTrue(np.isfinite(f["motion"]).all())
-        self.assertLess(np.abs(f["motion"][..., :2]).min(), 48)
-        before, after = limpid.compare(f["color"], truth), limpid.compare(clean, truth)
-        self.assertGreater(after["psnr"], before["psnr"] + 6, (before, after))
-        self.assertLess(after["flip"], before["flip"])
-
-    def test_builtin_scenes(self):
-        self.assertIn("builtin:cornell", limpid.builtin_scenes())
 
 
 class PackageTest(unittest.TestCase):

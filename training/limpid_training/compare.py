@@ -2,8 +2,8 @@
 
     python3 -m limpid_training.compare RUN RUN ... -o comparison.svg
 
-Each run is labelled with the name of its folder. For each pair of runs, also prints how long one took to reach the
-final validation error of the other."""
+Each run is labelled with the name of its folder, or with its path if two names are equal. For each pair of runs, also
+prints how long one took to reach the final validation error of the other."""
 
 import argparse
 import json
@@ -15,6 +15,11 @@ from . import features, pictures
 def read(run):
     with open(os.path.join(run, "losses.json")) as stream:
         return json.load(stream)
+
+
+def labels(runs):
+    names = [os.path.basename(os.path.normpath(run)) for run in runs]
+    return names if len(set(names)) == len(names) else [os.path.normpath(run) for run in runs]
 
 
 def first_below(values, least):
@@ -51,7 +56,7 @@ def main():
     parser.add_argument("runs", nargs="+", help="output folders of limpid_training.train")
     parser.add_argument("-o", "--output", required=True, help="SVG file to write")
     chosen = parser.parse_args()
-    runs = {os.path.basename(os.path.normpath(run)): read(run) for run in chosen.runs}
+    runs = {name: read(run) for name, run in zip(labels(chosen.runs), chosen.runs)}
     pictures.write_plots(chosen.output, plots(runs))
     print("\n".join(table(runs)))
 

@@ -40,12 +40,16 @@ def main():
     parser.add_argument("data", help="output folder of `limpid dataset`; its scenes should not be those of the run")
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     chosen = parser.parse_args()
-    ratios = []
+    ratios, known = [], 0
+    learnt = set(torch.load(os.path.join(chosen.run, "checkpoint.pt"), map_location="cpu").get("learnt", ()))
     print(f"{'scene':<32}{'noisy':>10}{'denoised':>10}{'ratio':>8}")
     for scene, noisy, denoised in evaluate(chosen.run, chosen.data, chosen.device):
         ratios.append(denoised / max(noisy, 1e-12))
+        known += scene in learnt
         print(f"{scene:<32}{noisy:>10.5f}{denoised:>10.5f}{ratios[-1]:>8.3f}")
     print(f"mean ratio {sum(ratios) / len(ratios):.3f}")
+    if known:
+        print(f"{known} of the {len(ratios)} scenes were trained on; take a data set of another --seed")
 
 
 if __name__ == "__main__":

@@ -20,6 +20,9 @@ def export(run, output):
     if options["direct"]:
         raise SystemExit(f"{run}: predicts colours; Limpid denoises with kernels")
     weights = {name: weight.half() for name, weight in state["net"].items()}
+    for name, weight in weights.items():
+        if not torch.isfinite(weight).all():
+            raise SystemExit(f"{run}: some of '{name}' are no finite numbers in half precision")
     unseen = sorted(set(range(features.INPUT_CHANNELS)) - set(features.INPUTS[options["inputs"]]))
     for side in features.SIDES:
         weights[side + ".hidden.0.weight"][:, unseen] = 0.0  # inputs not used in training

@@ -39,8 +39,8 @@ def ticks(low, high):
 
 def panel(left, width, height, title, across, curves):
     """Returns the SVG elements of one plot. `curves` maps names to (xs, ys). The y axis is logarithmic; points with y
-    <= 0 are left out. `across` is the label of the x axis."""
-    points = [(x, y) for xs, ys in curves.values() for x, y in zip(xs, ys) if y > 0]
+    <= 0 or infinite y are left out. `across` is the label of the x axis."""
+    points = [(x, y) for xs, ys in curves.values() for x, y in zip(xs, ys) if 0 < y < math.inf]
     if not points:
         return []
     low, high = min(y for _, y in points) / 1.1, max(y for _, y in points) * 1.1
@@ -63,7 +63,7 @@ def panel(left, width, height, title, across, curves):
     parts.append(f'<text x="{left + 55 + inner / 2}" y="{height - 6}" text-anchor="middle">{across}</text>')
     for k, (name, (xs, ys)) in enumerate(curves.items()):
         color = COLORS[k % len(COLORS)]
-        line = " ".join("{:.1f},{:.1f}".format(*place(x, y)) for x, y in zip(xs, ys) if y > 0)
+        line = " ".join("{:.1f},{:.1f}".format(*place(x, y)) for x, y in zip(xs, ys) if 0 < y < math.inf)
         parts.append(f'<polyline fill="none" stroke="{color}" stroke-width="1.5" points="{line}"/>')
         parts.append(f'<text x="{left + 60 + inner / 2 * (k % 2)}" y="{36 + 14 * (k // 2)}" fill="{color}">{name}</text>')
     return parts

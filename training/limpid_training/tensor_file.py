@@ -7,7 +7,6 @@ import struct
 import tempfile
 import zlib
 
-import numpy
 import torch
 
 _TYPES = {"F16": torch.float16, "F32": torch.float32}
@@ -58,11 +57,13 @@ def read(path):
 
     The file is mapped: processes that read the same file share its memory, and tensors that are never used are never
     loaded. Changes to a tensor are not written back."""
-    if os.path.getsize(path) < 8:
+    size = os.path.getsize(path)
+    if size < 8:
         raise ValueError(f"{path}: is no safetensors file")
-    content = numpy.memmap(path, dtype=numpy.uint8, mode="c")
+    # Unlike numpy.memmap, keeps no file open: data sets may have more files than a process may open.
+    content = torch.from_file(path, shared=False, size=size, dtype=torch.uint8).numpy()
     (length,) = struct.unpack_from("<Q", content)
-    if length > len(content) - 8:
+    if length > size - 8:
         raise ValueError(f"{path}: is cut off within its header")
     header = json.loads(content[8 : 8 + length].tobytes())
     data = content[8 + length :]

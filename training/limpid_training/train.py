@@ -30,6 +30,9 @@ PRESETS = {
         "inputs": "gradients", "diffuse_input": "linear", "facing": ANY_FACING}
 }
 
+#: With other values of these, a checkpoint would be of another network or for other pictures.
+NETWORK_OPTIONS = ("samples", "hidden", "channels", "width", "inputs", "diffuse_input", "facing", "direct")
+
 
 def parse(arguments=None):
     parser = argparse.ArgumentParser(prog="limpid_training.train", description=__doc__.split("\n")[0])
@@ -88,9 +91,21 @@ def parse(arguments=None):
 
 def split(count, held_out):
     """Returns the indices of the training examples and of the held-out ones. Held-out examples are evenly spread,
-    because scenes of one kind are stored next to each other."""
+    because scenes of one kind are stored next to each other. Both even and odd ones are held out, because every second
+    example has its rays through the pixels' centres."""
     validated = [i for i in range(count) if (i + 1) * held_out // count > i * held_out // count]
+    if len({i % 2 for i in validated}) == 1:
+        validated = [i - k % 2 for k, i in enumerate(validated)]
     return sorted(set(range(count)) - set(validated)), validated
+
+
+def replace(path, write):
+    """Calls write(stream) for a new file, which replaces the one at `path` when it is complete."""
+    with open(path + ".new", "wb") as stream:
+        write(stream)
+        stream.flush()
+        os.fsync(stream.fileno())
+    os.replace(path + ".new", path)
 
 
 class Trainer:
@@ -110,6 +125,8 @@ class Trainer:
         if held_out >= len(self.examples):
             raise SystemExit(f"{options.data}: {len(self.examples)} examples are too few")
         self.learnt, self.validated = split(len(self.examples), held_out)
+        if len(self.learnt) < self.workers.count:
+            raise SystemExit(f"{options.data}: {self.workers.count} processes cannot share {len(self.learnt)} examples")
         self.rates = {"diffuse": options.rate_diffuse, "specular": options.rate_specular, "both": options.rate_tuning}
         self.optimizers = {
             name: torch.optim.Adam((self.net if name == "both" else getattr(self.net, name)).parameters(), lr=rate)
@@ -182,10 +199,11 @@ class Trainer:
         for begin in range(0, len(share), size):
             pool = []
             for index in share[begin : begin + size]:
-                frame = self.examples[self.learnt[index]]
+                frame, patch = self.examples[self.learnt[index]], self.options.patch
                 if self.options.vary:
                     frame = data.varied(frame, generator)
-                pool += data.patches(self.net.prepare(frame), frame, self.options.patch, self.options.patches, generator)
+                    patch = min(patch, *frame["depth"].shape[2:])  # turned or not, all have the same shape
+                pool += data.patches(self.net.prepare(frame), frame, patch, self.options.patches, generator)
             pool = data.shuffled(pool, torch.randperm(len(pool), generator=generator))
             for i in range(0, len(pool), size):
                 yield data.batch_of(pool[i : i + size])
@@ -206,6 +224,10 @@ class Trainer:
                 raise SystemExit(f"epoch {self.epoch + 1}: {batches - int(counts[side])} of {batches} losses of '{side}' are no finite "
                                  "numbers; lower its rate, or use a longer --warm-up")
             self.losses.setdefault(side, []).append(float(sums[side]) / max(int(counts[side]), 1))
+        # Without the scaler, a single loss spoils them. The checkpoint of the epoch before is worth more.
+        if not all(bool(torch.isfinite(weight).all()) for weight in self.net.parameters()):
+            raise SystemExit(f"epoch {self.epoch + 1}: weights are no finite numbers any more; lower the rate, or use a longer "
+                             "--warm-up")
 
     @torch.no_grad()
     def validate(self):
@@ -219,6 +241,9 @@ class Trainer:
             total += rel_mse(result, target) / max(rel_mse(noisy, target), 1e-12)
         self.losses.setdefault("validation", []).append(total / len(self.validated))
         self.shown = [noisy, result, target]
+
+    def scenes(self, indices):
+        return [self.examples.examples[i][2] for i in indices]
 
     def save(self):
         folder = self.options.output
@@ -234,23 +259,31 @@ class Trainer:
             "times": self.times,
             "options": vars(self.options),
             "dataset": self.examples.manifest["dataset"],
-            "validated": [self.examples.examples[i][2] for i in self.validated],
+            "validated": self.scenes(self.validated),
+            "learnt": self.scenes(self.learnt),
         }
-        temporary = os.path.join(folder, "checkpoint.pt.new")
-        torch.save(state, temporary)
-        os.replace(temporary, os.path.join(folder, "checkpoint.pt"))
-        with open(os.path.join(folder, "losses.json"), "w") as stream:
-            json.dump({"seconds": self.seconds, "losses": self.losses, "times": self.times}, stream, indent=1)
+        replace(os.path.join(folder, "checkpoint.pt"), lambda stream: torch.save(state, stream))
+        losses = json.dumps({"seconds": self.seconds, "losses": self.losses, "times": self.times}, indent=1)
+        replace(os.path.join(folder, "losses.json"), lambda stream: stream.write(losses.encode()))
         pictures.write_curves(os.path.join(folder, "losses.svg"), self.losses, phases=("both",))
         row = torch.cat([pictures.shown(light[0].cpu()) for light in self.shown], dim=2)
         pictures.write_png(os.path.join(folder, "validation.png"), row)
 
     def resume(self):
-        state = torch.load(os.path.join(self.options.output, "checkpoint.pt"), map_location=self.workers.device)
+        path = os.path.join(self.options.output, "checkpoint.pt")
+        state = torch.load(path, map_location=self.workers.device)
+        for name in NETWORK_OPTIONS:
+            now = getattr(self.options, name)
+            before = state["options"].get(name, now)
+            if before != now:
+                raise SystemExit(f"{path}: was trained with --{name.replace('_', '-')} {before}, not {now}")
+        if state.get("validated", self.scenes(self.validated)) != self.scenes(self.validated):
+            raise SystemExit(f"{path}: other examples were held out; go on with the same data and --validation")
         self.net.load_state_dict(state["net"])
         for name, optimizer in self.optimizers.items():
             optimizer.load_state_dict(state["optimizers"][name])
-        self.scaler.load_state_dict(state["scaler"])
+        if state["scaler"]:  # empty if a CPU has saved it
+            self.scaler.load_state_dict(state["scaler"])
         # Another number of workers makes another number of batches of an epoch.
         share = state.get("workers", 1) / self.workers.count
         self.batches_done = {name: done * share for name, done in state["batches_done"].items()}

@@ -42,6 +42,15 @@ class TensorFileTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "damaged"):
             tensor_file.read(self.path)
 
+    @unittest.skipUnless(os.path.isdir("/proc/self/fd"), "needs Linux")
+    def test_keeps_no_file_open(self):
+        tensor_file.write(self.path, {"w": torch.ones(100)})
+        before = len(os.listdir("/proc/self/fd"))
+        read = [tensor_file.read(self.path) for _ in range(3)]
+        self.assertEqual(len(os.listdir("/proc/self/fd")), before)
+        read[0][0]["w"][0] = 2.0
+        self.assertEqual(tensor_file.read(self.path)[0]["w"][0], 1.0, "changes are not written back")
+
     def test_a_cut_file_is_noticed(self):
         tensor_file.write(self.path, {"w": torch.ones(100)})
         for size in (3, 20):

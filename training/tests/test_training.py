@@ -1,3 +1,5 @@
+import contextlib
+import io
 import json
 import os
 import socket
@@ -5,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import torch
 
@@ -90,6 +93,10 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual(sorted(learnt + validated), list(range(100)))
         self.assertEqual(len(validated), 7)
         self.assertLess(max(b - a for a, b in zip(validated, validated[1:])), 16)
+        for held_out in 60, 300:  # every second example has rays through the pixels' centres
+            learnt, validated = train.split(600, held_out)
+            self.assertEqual((len(validated), sum(i % 2 for i in validated)), (held_out, held_out // 2))
+            self.assertEqual(sorted(learnt + validated), list(range(600)))
 
     def test_losses_that_are_no_numbers_stop_it(self):
         with self.assertRaisesRegex(SystemExit, "'diffuse' are no finite numbers"):
@@ -111,6 +118,10 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual(len(judged), 6)
         for scene, noisy, denoised in judged:
             self.assertLess(denoised, 0.9 * noisy, scene)
+        told = io.StringIO()
+        with mock.patch("sys.argv", ["evaluate", run, self.data, "--device", "cpu"]), contextlib.redirect_stdout(told):
+            evaluate.main()
+        self.assertIn("5 of the 6 scenes were trained on", told.getvalue())
 
         file = os.path.join(self.folder, "weights.safetensors")
         export.export(run, file)
@@ -123,6 +134,12 @@ class TrainingTest(unittest.TestCase):
             difference = (net(prepared) - trainer.net(prepared)).abs().max().item()
         self.assertLess(difference, 1e-2)
 
+        state = torch.load(os.path.join(run, "checkpoint.pt"))
+        state["net"]["specular.output.bias"][0] = 1e6
+        torch.save(state, os.path.join(run, "checkpoint.pt"))
+        with self.assertRaisesRegex(SystemExit, "specular.output.bias"):
+            export.export(run, file)
+
     def test_goes_on_where_it_was_stopped(self):
         _, whole = self.train("whole", "--epochs", "3", "--tuning-epochs", "1", "--vary")
         losses, _ = self.train("parts", "--epochs", "3", "--tuning-epochs", "1", "--vary", "--time-limit", "0.001")
@@ -131,6 +148,40 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual(len(losses["validation"]), 4)
         for a, b in zip(whole.net.parameters(), parts.net.parameters()):
             self.assertTrue(torch.equal(a, b))
+
+    def test_goes_on_only_with_the_same_network_and_examples(self):
+        epochs = ("--epochs", "2", "--tuning-epochs", "0")
+        self.train("run", *epochs, "--time-limit", "0.001")
+        for option in ("--facing", "-2"), ("--hidden", "2"), ("--diffuse-input", "linear"), ("--inputs", "gradients"):
+            with self.assertRaisesRegex(SystemExit, "was trained with " + option[0]):
+                self.train("run", *epochs, "--resume", *option)
+        with self.assertRaisesRegex(SystemExit, "--validation"):
+            self.train("run", *epochs, "--resume", "--validation", "0.5")
+
+    def test_weights_that_are_no_numbers_replace_no_checkpoint(self):
+        self.train("run", "--epochs", "2", "--time-limit", "0.001")
+        trainer = train.Trainer(train.parse(self.options("run", "--epochs", "2", "--resume")))
+
+        def step(side, batch):
+            trainer.net.diffuse.output.bias.data[0] = float("nan")
+            return torch.tensor(0.5)
+
+        checkpoint = os.path.join(self.folder, "run", "checkpoint.pt")
+        with mock.patch.object(trainer, "step", step), self.assertRaisesRegex(SystemExit, "weights"):
+            trainer.run()
+        state = torch.load(checkpoint)
+        self.assertEqual(state["epoch"], 1)
+        self.assertTrue(torch.isfinite(state["net"]["diffuse.output.bias"]).all())
+
+    def test_turned_pictures_may_be_smaller_than_a_patch(self):
+        losses, _ = self.train("run", "--epochs", "1", "--tuning-epochs", "0", "--vary", "--patch", "128")
+        self.assertEqual(len(losses["diffuse"]), 1)
+
+    def test_more_processes_than_examples_are_refused(self):
+        workers = mock.Mock(count=8, number=0, device=torch.device("cpu"))
+        options = train.parse(self.options("run"))
+        with mock.patch.object(train, "Workers", return_value=workers), self.assertRaisesRegex(SystemExit, "8 proc"):
+            train.Trainer(options)
 
     def test_stops_in_time(self):
         losses, _ = self.train("run", "--epochs", "1000", "--time-limit", "0.01")
@@ -211,6 +262,12 @@ class TrainingTest(unittest.TestCase):
         losses = self.losses_of("run")
         self.assertEqual([len(losses[name]) for name in ("diffuse", "both", "validation")], [3, 1, 4])
         self.assertLess(losses["validation"][-1], losses["validation"][0])
+
+
+class CompareTest(unittest.TestCase):
+    def test_runs_of_the_same_name_have_their_paths(self):
+        self.assertEqual(compare.labels(["a/run/", "b"]), ["run", "b"])
+        self.assertEqual(compare.labels(["a/run/", "b/run"]), ["a/run", "b/run"])
 
 
 class RelMseTest(unittest.TestCase):
