@@ -55,6 +55,8 @@ void report(const DenoiseOptions& o, const shot::ShotJob& job, const shot::ShotS
     } else {
         if (!madeByProcess.empty()) log::info("{}", describePieces(madeByProcess, "windows"));
         if (summary.kept > 0) log::info("{} frames were complete", summary.kept);
+        if (!summary.skipped.empty())
+            log::info("skipped frames that could not be read: {}", describeFrames(summary.skipped));
         if (!summary.cuts.empty()) log::info("cuts before frames {}", describeFrames(summary.cuts));
         log::info("wrote {}: {} frames by {}, in {}, on {}", o.request.output, summary.frames, denoiser,
                   durationText(summary.seconds), device.info().name);
@@ -108,7 +110,7 @@ void addLayerOptions(CLI::App& command, shot::ShotRequest& o) {
                        "docs/denoise-your-renders.md lists all (repeatable)");
     command.add_option(
         "--file", o.files,
-        "A layer in a file of its own: albedo=albedo.%04d.pfm; EXR, PFM, HDR, PNG (repeatable)");
+        "A layer in a file of its own: albedo=albedo.%04d.pfm; EXR, PFM, HDR; PNG for colours (repeatable)");
     command.add_option("--map-file", o.mapFile, "Read assignments of --map from a JSON file");
     command.add_option("--camera", o.cameras,
                        "Cameras of the frames: a JSON file (docs/denoise-your-renders.md), or a glTF file; "
@@ -124,7 +126,8 @@ void addLayerOptions(CLI::App& command, shot::ShotRequest& o) {
 
 void addFilmOptions(CLI::App& command, shot::ShotRequest& o, size_t& window) {
     const OptionGroup group(command, "Films");
-    command.add_option("--frames", o.frames, "Only these frames of the input: 10-20");
+    command.add_option("--frames", o.frames,
+                       "Write only these frames of the input: 10-20; those around them make histories");
     command.add_flag("--bidirectional", o.bidirectional,
                      "Denoise forwards and backwards and merge both, so that no frame lacks a history; takes "
                      "about twice as long");

@@ -63,6 +63,8 @@ uint64_t identityOf(const shot::ShotJob& job, size_t window) {
     hash.add(job.input.text() + '\n' + job.output.text());
     hash.addValue(window);
     for (const int frame : job.frames) hash.addValue(frame);
+    hash.addValue(job.firstWritten);
+    hash.addValue(job.endWritten);
     return hash.value();
 }
 
@@ -146,6 +148,7 @@ ShotSummary denoiseInWindows(shot::ShotJob& job, size_t windowFrames, gpu::Devic
     ShotSummary summary =
         ranks() ? denoiseShared(job, length, device, madeByProcess) : denoiseAlone(job, length, device);
     summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (isFirstProcess()) shot::checkSomeFrameWasRead(job, summary);  // others know their windows alone
     return summary;
 }
 

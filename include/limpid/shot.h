@@ -51,7 +51,7 @@ typedef struct limpid_shot_desc {
     float fps;             /* of the animation in a glTF file of cameras, frames per second; 0: 24 */
     int32_t camera_start;  /* the frame at time 0 of that animation */
     const char* motion;    /* where files have no motion: "auto" (default) searches it, "none" does without */
-    const char* frames;    /* "10-20" or "7": only these */
+    const char* frames;    /* "10-20" or "7": only these are written; those around them make histories */
     const char* shard;     /* "2/4": only the second of four parts */
     const char* cuts;      /* "auto" (default), "none", or the first frames after cuts: "12,40" */
     const char* on_error;  /* what an unreadable frame does: "stop" (default) or "skip" */
@@ -60,8 +60,10 @@ typedef struct limpid_shot_desc {
     float preserve;        /* share of filtered detail that is given back, 0 to 1: more detail and more noise */
     int32_t bidirectional; /* not 0: denoise forwards and backwards, and merge both; takes twice as long */
     int32_t resume;        /* not 0: go on after the last complete output (EXR) */
-    /* Called on the calling thread after each frame that is denoised. Not 0 stops the run: frames so far are written.
-     * May be NULL. */
+    /* Called on the calling thread for each frame that is denoised. `done` frames are finished; it stays the same
+     * while only histories are made (before `frames` or a `shard`, and backwards). With `resume` it is also called for
+     * each output that is complete; these do not count as done, and are no part of `total` afterwards. Not 0 stops the
+     * run: frames so far are written. May be NULL. */
     int32_t (*progress)(void* user, uint32_t done, uint32_t total);
     void* progress_user;
 } limpid_shot_desc;

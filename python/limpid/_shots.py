@@ -1,9 +1,11 @@
 """Denoising of files of any renderer. Uses the extension module limpid._shot."""
 
+import numbers
 import os
 import warnings
 
-from limpid._denoising import Device
+from limpid import _arrays
+from limpid._denoising import text_of
 
 try:
     from limpid import _shot
@@ -24,12 +26,8 @@ def _path(value):
 
 def _pairs(values):
     """{"albedo": "MyAlbedo.RGB"} as "albedo=MyAlbedo.RGB"."""
-    def text(value):
-        if isinstance(value, bool):
-            return str(value).lower()
-        return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
-
-    return [f"{name}={text(value)}" for name, value in (values or {}).items()]
+    return [f"{name}={os.fspath(value) if isinstance(value, os.PathLike) else _arrays.setting(value)}"
+            for name, value in (values or {}).items()]
 
 
 def _inputs(input, map, map_file, files, cameras, fps, camera_start, motion, frames, **rest):
@@ -42,7 +40,7 @@ def _inputs(input, map, map_file, files, cameras, fps, camera_start, motion, fra
     options.fps, options.camera_start = float(fps), int(camera_start)
     options.motion = motion or "none"
     if frames is not None:
-        first, last = (frames, frames) if isinstance(frames, int) else frames
+        first, last = (frames, frames) if isinstance(frames, numbers.Integral) else frames
         options.frames = f"{first:d}-{last:d}"
     for name, value in rest.items():
         setattr(options, name, value)
@@ -77,7 +75,7 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     cameras: path of a file of the frames' cameras: JSON, or glTF ("scene.glb#NAME" chooses one of its cameras).
     fps, camera_start: frames per second of the animation in a glTF file, and the frame at its time 0.
     motion: where files have no motion: "auto" searches it on albedo and normals, None denoises each frame alone.
-    frames: the only frames to denoise: a number, or (first, last).
+    frames: the only frames to write: a number, or (first, last). Those around them make histories.
     shard: (2, 4) denoises only the second of four parts.
     cuts: "auto", or a list of the first frames after cuts, which may be empty.
     skip_unreadable: leaves out frames that are missing or cannot be read, with a warning, instead of raising an error.
@@ -89,7 +87,7 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     exposure: of a PNG: stops, or "auto".
     device: text or number that chooses a device as limpid.Device does, or a limpid.Device. In both cases the device is
         opened separately. None: the best one.
-    progress: is called after each frame with the numbers of finished frames and of all frames. An exception in it stops
+    progress: is called for each frame with the numbers of finished frames and of all frames. An exception in it stops
         the run, and is raised; what is written is complete.
 
     Returns a dict: "frames" (written), "kept" (found complete, with `resume`), "skipped", "cuts" (numbers of them) and
@@ -100,15 +98,15 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     """
     if not 0.0 < strength <= 1.0:
         raise ValueError(f"strength: {strength!r} is not above 0 and at most 1")
-    select = device.name if isinstance(device, Device) else "" if device is None else str(device)
     options = _inputs(input, map, map_file, files, cameras, fps, camera_start, motion, frames,
-                      output=_path(output), denoiser=denoiser or "", preset=preset or "", settings=_pairs(parameters), weights=_path(weights),
+                      output=_path(output), denoiser=denoiser or "", preset=preset or "",
+                      settings=_pairs(parameters), weights=_path(weights),
                       shard="" if shard is None else f"{shard[0]:d}/{shard[1]:d}",
                       cuts=cuts if isinstance(cuts, str) else ",".join(f"{c:d}" for c in cuts) or "none",
                       on_error="skip" if skip_unreadable else "stop", strength=float(strength),
                       preserve=float(preserve),
                       bidirectional=bool(bidirectional), resume=bool(resume), exposure=str(exposure))
-    summary = _module().denoise(options, select, progress)
+    summary = _module().denoise(options, text_of(device), progress)
     for message in summary.pop("warnings"):
         warnings.warn(message, stacklevel=2)
     return summary

@@ -37,13 +37,14 @@ class ShotTest(unittest.TestCase):
                               text=True).stdout
 
     def test_writes_the_same_bits_as_the_program(self):
-        options = ["--device", DEVICE, "--bidirectional", "--strength", "0.75", "--preserve", "0.3", "--set", "svgf.levels=3"]
+        options = ["--device", DEVICE, "--bidirectional", "--strength", "0.75", "--preserve", "0.3",
+                   "--set", "svgf.levels=3"]
         self.program("-o", self.path("a.%04d.exr"), *options)
         calls = []
         summary = limpid.denoise_shot(self.shot, self.path("b.%04d.exr"), device=DEVICE, bidirectional=True,
-                                      strength=0.75, preserve=0.3, parameters={"svgf.levels": 3},
+                                      strength=0.75, preserve=0.3, parameters={"svgf.levels": 3.0},
                                       progress=lambda done, total: calls.append((done, total)))
-        self.assertEqual(calls, [(1, 2), (2, 2)])
+        self.assertEqual(calls, [(0, 2), (0, 2), (1, 2), (2, 2)], "backwards, then forwards")
         self.assertEqual((summary["frames"], summary["skipped"], summary["cuts"]), (2, 0, 0))
         for frame in (self.first, self.last):
             self.assertEqual(contents(self.path(f"a.{frame:04d}.exr")), contents(self.path(f"b.{frame:04d}.exr")))
@@ -63,6 +64,17 @@ class ShotTest(unittest.TestCase):
             limpid.denoise_shot(self.shot, self.path("c.%04d.exr"), device=DEVICE, progress=stop)
         # What was written before is complete.
         self.assertEqual(os.listdir(self.folder), [f"c.{self.first:04d}.exr"])
+
+    def test_progress_stops_backward_runs(self):
+        class Stop(Exception):
+            pass
+
+        def stop(done, total):
+            raise Stop
+
+        with self.assertRaises(Stop):
+            limpid.denoise_shot(self.shot, self.path("c.%04d.exr"), device=DEVICE, bidirectional=True, progress=stop)
+        self.assertEqual(os.listdir(self.folder), [])
 
     def test_errors_have_codes(self):
         cases = [("invalid_argument", {"denoiser": "none such"}), ("unreadable", {"map": {"albedo": "No.RGB"}}),

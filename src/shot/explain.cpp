@@ -36,6 +36,7 @@ std::set<std::string> channelsOf(const LayerMap& map) {
     };
     for (const auto& [role, expression] : map.layers) add(expression);
     for (const LayerExpression& group : map.groups) add(group);
+    add(map.target());
     return used;
 }
 
@@ -92,6 +93,7 @@ std::string explainLayers(const LoadedFrame& frame) {
     for (const auto& [layer, components] : unused)
         list += (list.empty() ? "" : ", ") + joined(layer, components);
     if (!list.empty()) text += fmt::format("    not used: {}\n", list);
+    for (const std::string& warning : frame.warnings) text += fmt::format("    {}\n", warning);
     return text;
 }
 
@@ -136,6 +138,7 @@ std::string explainView(const FrameReport& report) {
     if (report.lightShare < 0.99)
         text += fmt::format("    {:.0f} % of the beauty is in no layer of light and counts as specular\n",
                             100.0 * (1.0 - report.lightShare));
+    for (const std::string& problem : report.problems) text += fmt::format("    {}\n", problem);
     return text;
 }
 

@@ -95,6 +95,7 @@ struct ShotDenoiser::Picture {
     gpu::FrameGraph coveredColors{oneFrame}, coverage{oneFrame};  ///< of transparent film
     std::vector<std::unique_ptr<gpu::FrameGraph>> groups;
     std::optional<HostFrame> last;  ///< of Backwards: the guides of the frame after
+    bool lastIsSearched = false;    ///< its motion leads to the frame after it, so it cannot be inverted
 };
 
 ShotDenoiser::ShotDenoiser(gpu::Device& device, const ShotOptions& options, Direction direction)
@@ -111,7 +112,7 @@ HostFrame ShotDenoiser::hostFrame(LoadedFrame& frame, size_t index, Picture& pic
     std::optional<CameraParams> given;
     const auto camera =
         options_.cameras ? options_.cameras->at(frame.number, picture.map.encoding.worldUp) : std::nullopt;
-    if (camera) given = camera->params(layers.width, layers.height);
+    if (camera) given = camera->params(layers.width, layers.height, frame.file.pixelAspect());
     if (frame.maps[index].searchesMotion)
         if (auto motion = picture.search.next(layers, continues))
             layers.images["motion"] = std::move(*motion);
@@ -163,15 +164,17 @@ std::vector<float> ShotDenoiser::smoothed(gpu::FrameGraph& graph, const HostFram
 }
 
 /// Multiplies the clean picture by alpha, and averages both over frames in the same way: with few samples,
-/// most of the noise of thin things is their coverage.
-void ShotDenoiser::coverFilm(Picture& picture, const ShotLayers& layers, const HostFrame& frame,
+/// most of the noise of thin things is their coverage. Alpha that cannot be written (that of --file) stays.
+void ShotDenoiser::coverFilm(Picture& picture, const LoadedFrame& file, size_t index, const HostFrame& frame,
                              bool continues, CleanPicture& result) {
+    const ShotLayers& layers = file.layers[index];
     const image::Image& alpha = layers.images.at("alpha");
     multiplyByAlpha(alpha, frame, result);
     const auto samples = static_cast<float>(layers.samples);
     const float framesOfCoverage =
         samples > 0.0f ? std::max(samplesOfCoverage / std::max(samples, 2.0f), 1.0f) : 1.0f;
-    const bool alone = options_.keepsAntialiasing || options_.method->network;
+    const bool alone = options_.keepsAntialiasing || options_.method->network ||
+                       !isReplaceable(file.file, *file.maps[index].find("alpha"));
     if (alone || framesOfCoverage <= 1.0f) return;
     result.beauty =
         smoothed(picture.coveredColors, frame, std::move(result.beauty), framesOfCoverage, continues);
@@ -223,7 +226,7 @@ void ShotDenoiser::goBackwards(HostFrame& host, Picture& picture, bool continues
     if (!own) reflectionMotion.swap(host.reflectionMotion);
     if (searched && !own) {
         addDistances(host, picture.last);  // it leads to the frame after already
-    } else if (continues && picture.last) {
+    } else if (continues && picture.last && !picture.lastIsSearched) {
         turnAround(host, *picture.last);
         host.reflectionMotion.swap(reflectionMotion);
         dropMovingMirrors(picture.last->camera, host);
@@ -231,6 +234,7 @@ void ShotDenoiser::goBackwards(HostFrame& host, Picture& picture, bool continues
         std::fill(host.motion.begin(), host.motion.end(), 0.0f);
     }
     picture.last = std::move(guides);
+    picture.lastIsSearched = searched && !own;
 }
 
 std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continues) {
@@ -247,14 +251,14 @@ std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continu
         if (options_.method->network && !own) showSpecularAlbedo(host);
         if (!frame.estimated.empty()) estimateVariances(host, frame.estimated);
         if (direction_ == Direction::Backwards)
-            goBackwards(host, picture, continues, own, frame.maps[i].searchesMotion);
+            goBackwards(host, picture, continues, own,
+                        frame.maps[i].searchesMotion || picture.converter.report().motionSearched);
         CleanPicture& result = results.emplace_back(clean(
             picture.graph, host, own ? 0.0f : edgeFrames(frame.layers[i], *options_.method), continues));
         result.report = picture.converter.report();
         if (!own && direction_ == Direction::Forwards && !frame.layers[i].groups.empty())
             cleanGroups(picture, frame, i, host, continues, result);
-        if (!own && frame.layers[i].isTransparent)
-            coverFilm(picture, frame.layers[i], host, continues, result);
+        if (!own && frame.layers[i].isTransparent) coverFilm(picture, frame, i, host, continues, result);
         if (!own) frame.layers[i] = {};
     }
     return results;

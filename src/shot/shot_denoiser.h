@@ -49,7 +49,7 @@ class ShotDenoiser {
                        bool continues);
     std::vector<float> smoothed(gpu::FrameGraph& graph, const denoise::HostFrame& frame,
                                 std::vector<float> colors, float frames, bool continues);
-    void coverFilm(Picture& picture, const ShotLayers& layers, const denoise::HostFrame& frame,
+    void coverFilm(Picture& picture, const LoadedFrame& file, size_t index, const denoise::HostFrame& frame,
                    bool continues, CleanPicture& result);
 
     gpu::Device& device_;

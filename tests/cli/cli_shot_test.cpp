@@ -228,6 +228,10 @@ TEST_F(CliShotTest, ShardsAndInterruptedRunsMakeTheSameFiles) {
     EXPECT_THAT(result.output, Not(HasSubstr("were complete"))) << "other settings";
     // A changed frame changes those before it if they are denoised backwards, too; a missing one does not.
     ASSERT_EQ(denoise("own.%02d.exr", "both.%02d.exr", "--bidirectional").code, 0);
+    ASSERT_EQ(denoise("own.%02d.exr", "few.%02d.exr", "--bidirectional --frames 2-3").code, 0);
+    for (const char* frame : {"02", "03"})
+        EXPECT_EQ(get(std::string("few.") + frame + ".exr"), get(std::string("both.") + frame + ".exr"))
+            << frame;
     fs::remove(path("both.07.exr"));
     result = denoise("own.%02d.exr", "both.%02d.exr", "--bidirectional --resume");
     EXPECT_THAT(result.output, HasSubstr("7 frames were complete"));
@@ -236,16 +240,20 @@ TEST_F(CliShotTest, ShardsAndInterruptedRunsMakeTheSameFiles) {
     result = denoise("own.%02d.exr", "both.%02d.exr", "--bidirectional --resume");
     EXPECT_THAT(result.output, Not(HasSubstr("were complete")));
     put("own.05.exr", before);
-    result = denoise("own.%02d.exr", "few.%02d.exr", "--frames 2-3");
-    EXPECT_EQ(result.code, 0);
-    EXPECT_FALSE(fs::exists(path("few.01.exr")));
-    EXPECT_TRUE(fs::exists(path("few.03.exr")));
+    // Also of some frames, or of a single one.
+    EXPECT_EQ(denoise("own.%02d.exr", "few.%02d.exr", "--frames 2-3").code, 0);
+    EXPECT_EQ(denoise("own.%02d.exr", "few.%02d.exr", "--frames 7").code, 0);
+    for (const char* frame : {"02", "03", "07"})
+        EXPECT_EQ(get(std::string("few.") + frame + ".exr"), get(std::string("whole.") + frame + ".exr"))
+            << frame;
+    for (const char* frame : {"01", "04", "06"})
+        EXPECT_FALSE(fs::exists(path(std::string("few.") + frame + ".exr"))) << frame;
     // A single file, and frames that are not there.
     ASSERT_EQ(denoise("own.02.exr", "one.exr", "--resume").code, 0);
     EXPECT_THAT(denoise("own.02.exr", "one.exr", "--resume").output, HasSubstr("1 frames were complete"));
     result = denoise("own.%02d.exr", "few.%02d.exr", "--frames 6-9");
     EXPECT_EQ(result.code, 3);
-    EXPECT_THAT(result.output, HasSubstr("frame 9 is missing"));
+    EXPECT_THAT(result.output, HasSubstr("frames 8-9 are missing"));
     EXPECT_EQ(denoise("own.%02d.exr", "own.%02d.exr").code, 2) << "in place";
     for (const char* wrong : {"--map beauty=", "--shard 0/2", "--shard 3/2", "--shard 1", "--frames 5-2",
                               "--frames x", "--cuts 1,x", "--on-error never", "--strength 2", "--map albedo",
@@ -266,6 +274,38 @@ TEST_F(CliShotTest, UnreadableFramesEndTheRunOrAreSkipped) {
     EXPECT_THAT(result.output, HasSubstr("the frame is skipped"));
     EXPECT_TRUE(fs::exists(path("clean.07.exr")));
     EXPECT_FALSE(fs::exists(path("clean.03.exr")));
+    result = denoise("own.%02d.exr", "clean.%02d.exr", "--on-error skip --resume");
+    EXPECT_EQ(result.code, 0) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("7 frames were complete"));
+    EXPECT_THAT(result.output, HasSubstr("skipped frames that could not be read: 3"));
+    EXPECT_THAT(result.output, HasSubstr(": 0 frames by svgf"));
+    // Frames that only make histories.
+    result = denoise("own.%02d.exr", "few.%02d.exr", "--frames 5");
+    EXPECT_EQ(result.code, 0) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("histories do without the frame"));
+    EXPECT_TRUE(fs::exists(path("few.05.exr")));
+}
+
+TEST_F(CliShotTest, APartMayHaveNoReadableFrames) {
+    for (const char* frame : {"02", "03"}) put(std::string("own.") + frame + ".exr", "damaged");
+    fs::remove(path("own.05.exr"));
+    Result result = denoise("own.%02d.exr", "clean.%02d.exr", "--on-error skip --window 2");
+    EXPECT_EQ(result.code, 0) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("frame 5 is missing"));
+    EXPECT_THAT(result.output, HasSubstr("skipped frames that could not be read: 2-3"));
+    EXPECT_THAT(result.output, HasSubstr(": 5 frames by svgf"));
+    result = denoise("own.%02d.exr", "part.%02d.exr", "--on-error skip --shard 4/7");
+    EXPECT_EQ(result.code, 0) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("the frame is skipped"));
+    EXPECT_FALSE(fs::exists(path("part.03.exr")));
+    for (const char* options : {"--frames 2-3", "--frames 2-3 --window 1", "--frames 2-3 --resume"}) {
+        result = denoise("own.%02d.exr", "none.%02d.exr", std::string("--on-error skip ") + options);
+        EXPECT_EQ(result.code, 3) << options;
+        EXPECT_THAT(result.output, HasSubstr("no frame could be read")) << options;
+    }
+    result = denoise("own.%02d.exr", "clean.%02d.exr");
+    EXPECT_EQ(result.code, 3);
+    EXPECT_THAT(result.output, HasSubstr("frame 5 is missing"));
 }
 
 TEST_F(CliShotTest, StrengthMixesWithTheInputAndGroupsSumUpToTheBeauty) {

@@ -78,10 +78,11 @@ std::optional<CameraParams> cameraOfAttributes(const image::ExrDocument& file, s
     if (!tangent || !finite(toWorld[0]) || !finite(toWorld[1]) || !finite(toWorld[2]) || !finite(toWorld[3]))
         return std::nullopt;
     const auto w = static_cast<float>(file.width()), h = static_cast<float>(file.height());
+    const float ratio = h / (w * file.pixelAspect());
     CameraParams camera{};
     camera.origin = vec3(toWorld[3]);
     camera.right = glm::normalize(vec3(toWorld[0])) * *tangent;
-    camera.up = glm::normalize(vec3(toWorld[1])) * (*tangent * h / w);
+    camera.up = glm::normalize(vec3(toWorld[1])) * (*tangent * ratio);
     camera.forward = glm::normalize(vec3(toWorld[2]));
     camera.spread = 2.0f * *tangent / w;
     return camera;

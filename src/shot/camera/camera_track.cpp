@@ -90,8 +90,9 @@ class CameraReader {
 
 }  // namespace
 
-CameraParams ShotCamera::params(uint32_t width, uint32_t height) const {
-    const auto w = static_cast<float>(width), h = static_cast<float>(height);
+CameraParams ShotCamera::params(uint32_t width, uint32_t height, float pixelAspect) const {
+    const float w = static_cast<float>(width) * pixelAspect;  // in heights of a pixel
+    const auto h = static_cast<float>(height);
     const bool orthographic = orthographicHeight > 0.0f;
     const float halfHeight = orthographic ? orthographicHeight / 2.0f : std::tan(verticalFov / 2.0f);
     const vec3 axis = glm::normalize(forward), right = glm::normalize(glm::cross(axis, up));

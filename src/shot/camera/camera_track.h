@@ -20,7 +20,8 @@ struct ShotCamera {
     float orthographicHeight = 0.0f;  ///< of the picture; 0: perspective
     vec2 shift{0.0f, 0.0f};           ///< of the picture, in shares of its larger side; x right, y up
 
-    CameraParams params(uint32_t width, uint32_t height) const;
+    /// Of a picture with this many pixels. `pixelAspect`: a pixel's width over its height.
+    CameraParams params(uint32_t width, uint32_t height, float pixelAspect = 1.0f) const;
 };
 
 /// Which axis points up in a world. Both are right-handed, with the same x.

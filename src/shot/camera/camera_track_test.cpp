@@ -56,6 +56,16 @@ TEST_F(CameraTrackTest, OneCameraMayHoldForAllFrames) {
     EXPECT_NEAR(camera.up.z, 2.0f, 1e-6f);
 }
 
+/// 100x100 pixels that are twice as wide as high are a picture of 2 : 1.
+TEST_F(CameraTrackTest, PixelsMayBeWide) {
+    const CameraTrack track = read(frame(R"(, "fov_y": 90, "shift": [0.25, 0])", "7"));
+    const CameraParams square = track.at(7)->params(200, 100), wide = track.at(7)->params(100, 100, 2.0f);
+    EXPECT_EQ(wide.right, square.right);
+    EXPECT_EQ(wide.up, square.up);
+    EXPECT_EQ(wide.forward, square.forward);
+    EXPECT_EQ(wide.spread, square.spread);
+}
+
 TEST_F(CameraTrackTest, FaultsAreNamed) {
     EXPECT_THAT(messageOf("{"), HasSubstr("is no JSON file"));
     EXPECT_THAT(messageOf("[]"), HasSubstr("has no object 'frames'"));

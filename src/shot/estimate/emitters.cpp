@@ -17,8 +17,12 @@ class Picture {
   public:
     explicit Picture(const image::Image& image) : image_(image) {}
 
+    /// Infinite lamps (too bright for a file in half precision) are alike, and above the median.
     vec3 at(size_t p) const {
-        return {image_.pixels[3 * p], image_.pixels[3 * p + 1], image_.pixels[3 * p + 2]};
+        vec3 color(image_.pixels[3 * p], image_.pixels[3 * p + 1], image_.pixels[3 * p + 2]);
+        for (int c = 0; c < 3; ++c)
+            if (color[c] == INFINITY) color[c] = largestHalf;
+        return color;
     }
     float luminance(size_t p) const { return shot::luminance(at(p)); }
 

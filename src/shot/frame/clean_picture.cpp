@@ -10,11 +10,7 @@ namespace limpid::shot {
 namespace {
 
 void checkReplaceable(const image::ExrDocument& file, const LayerExpression& expression) {
-    bool single = expression.terms().size() == 1 && expression.terms().front().scale == 1.0f &&
-                  expression.terms().front().factors.size() == 1;
-    for (const ChannelPlace& place : expression.terms().front().factors.front().channels)
-        single = single && !file.parts()[place.part].attached;
-    if (!single)
+    if (!isReplaceable(file, expression))
         throw UsageError(fmt::format("'{}' is no layer of {} that could be replaced", expression.text(),
                                      file.name().string()));
 }
@@ -46,9 +42,16 @@ void merge(CleanPicture& forwards, const CleanPicture& backwards) {
     }
 }
 
+bool isReplaceable(const image::ExrDocument& file, const LayerExpression& expression) {
+    bool single = expression.terms().size() == 1 && expression.terms().front().scale == 1.0f &&
+                  expression.terms().front().factors.size() == 1;
+    for (const ChannelPlace& place : expression.places())
+        single = single && !file.parts()[place.part].attached;
+    return single;
+}
+
 void checkReplaceable(const image::ExrDocument& file, const LayerMap& map) {
-    checkReplaceable(file, map.layers.at("beauty"));
-    if (const LayerExpression* const alpha = map.find("alpha")) checkReplaceable(file, *alpha);
+    checkReplaceable(file, map.target());
     for (const LayerExpression& group : map.groups) checkReplaceable(file, group);
 }
 
@@ -64,7 +67,7 @@ void shareOut(CleanPicture& picture) {
 
 std::set<size_t> replacePicture(image::ExrDocument& file, const LayerMap& map, const CleanPicture& picture) {
     std::set<size_t> parts;
-    replaceLayer(file, map.layers.at("beauty"), picture.beauty, parts);
+    replaceLayer(file, map.target(), picture.beauty, parts);
     if (!picture.alpha.empty()) {
         std::vector<float> texels(4 * picture.alpha.size());
         for (size_t p = 0; p < picture.alpha.size(); ++p) texels[4 * p] = picture.alpha[p];

@@ -14,7 +14,7 @@ namespace limpid::shot {
 /// One clean picture of a frame.
 struct CleanPicture {
     std::vector<float> beauty;  ///< RGBA per pixel
-    std::vector<float> alpha;   ///< on transparent film: coverage without noise, per pixel; else empty
+    std::vector<float> alpha;   ///< on transparent film: coverage without noise, per pixel; empty if it stays
     std::vector<float> frames;  ///< of each pixel's history; empty without temporal accumulation
     /// Clean light groups, RGBA per pixel, and what no group has; see shareOut(). Empty if there are none.
     std::vector<std::vector<float>> groups;
@@ -26,6 +26,8 @@ struct CleanPicture {
 /// histories, forwards.
 void merge(CleanPicture& forwards, const CleanPicture& backwards);
 
+/// Whether it is a single layer of the file.
+bool isReplaceable(const image::ExrDocument& file, const LayerExpression& expression);
 /// Throws UsageError if the beauty or a light group is no single layer of the file, so that it cannot be
 /// replaced.
 void checkReplaceable(const image::ExrDocument& file, const LayerMap& map);

@@ -1,12 +1,16 @@
 #include "shot/frame/loaded_frame.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <set>
 #include <span>
 
+#include "base/error.h"
 #include "base/files/file.h"
 #include "base/hash.h"
-#include "image/io/exr/exr.h"
 #include "image/io/pfm.h"
 #include "image/io/picture.h"
 #include "renderer/layers/frame_file.h"
@@ -37,10 +41,30 @@ image::LayeredImage layeredImage(const image::ExrDocument& file, bool network) {
     return picture;
 }
 
+/// All parts of an EXR file as one, with the channels' names as in --map.
+image::LayeredImage layersOfExr(std::vector<std::byte> bytes, const std::filesystem::path& path) {
+    image::ExrDocument file = image::ExrDocument::decode(std::move(bytes), path);
+    const ChannelTable table(file.parts());
+    image::LayeredImage result;
+    result.width = file.width();
+    result.height = file.height();
+    for (const LayerChannels& layer : table.layers()) {
+        for (const std::string& component : layer.components) {
+            std::string name = joined(layer.name, component);
+            const ChannelPlace place = *table.find(name);
+            result.channels.push_back(
+                {std::move(name), place.storage, file.values(place.part, place.channel)});
+        }
+    }
+    if (result.channels.empty())
+        throw InputError(path, file.parts().front().unreadable + ", which is not supported");
+    return result;
+}
+
 /// A file's layers; a picture of another format has R, G and B, or Y.
-image::LayeredImage layersOf(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+image::LayeredImage layersOf(std::vector<std::byte> bytes, const std::filesystem::path& path) {
     const image::PictureFormat format = image::formatOf(bytes);
-    if (format == image::PictureFormat::Exr) return image::decodeExr(bytes, path);
+    if (format == image::PictureFormat::Exr) return layersOfExr(std::move(bytes), path);
     const image::Image picture = format == image::PictureFormat::Pfm
                                      ? image::decodePfm(bytes, path)
                                      : image::decodePicture(bytes, path).linear;
@@ -56,7 +80,78 @@ image::ExrDocument openDocument(std::vector<std::byte> bytes, const std::filesys
     // Most frames are EXR files, so those that are nothing known get the error of such a file.
     const bool isExr = format == image::PictureFormat::Exr || format == image::PictureFormat::Unknown;
     return isExr ? image::ExrDocument::decode(std::move(bytes), path)
-                 : image::ExrDocument::of(layersOf(bytes, path), path);
+                 : image::ExrDocument::of(layersOf(std::move(bytes), path), path);
+}
+
+/// Why a format cannot hold such values; empty if it can.
+std::string_view whyUnfit(image::PictureFormat format, RoleValues values) {
+    using image::PictureFormat;
+    if ((format == PictureFormat::Png || format == PictureFormat::Jpeg) && values != RoleValues::Colors)
+        return "PNG and JPEG hold colours for screens";
+    if (format == PictureFormat::Hdr && values == RoleValues::Exact)
+        return "Radiance HDR holds neither signs nor exact numbers";
+    return {};
+}
+
+/// `formats`: of the attached files. Throws UsageError if one cannot hold what it is read as.
+void checkFormats(const LoadedFrame& frame, const LoadOptions& options,
+                  std::span<const image::PictureFormat> formats) {
+    const size_t own = frame.file.parts().size() - formats.size();
+    for (const LayerMap& map : frame.maps) {
+        for (const auto& [role, expression] : map.layers) {
+            for (const ChannelPlace& place : expression.places()) {
+                if (place.part < own) continue;
+                const std::string_view why = whyUnfit(formats[place.part - own], findRole(role)->values);
+                if (why.empty()) continue;
+                const auto& [name, pattern] = options.files[place.part - own];
+                throw UsageError(
+                    fmt::format("--file {}={}: {}; '{}' needs EXR or PFM", name, pattern.text(), why, role));
+            }
+        }
+    }
+}
+
+std::vector<std::string> warningsOf(const image::ExrDocument& file, const std::vector<LayerMap>& maps) {
+    std::vector<std::string> result;
+    std::set<size_t> replaced;
+    for (const LayerMap& map : maps) {
+        for (const std::string& remark : map.remarks)  // each view has it
+            if (std::find(result.begin(), result.end(), remark) == result.end()) result.push_back(remark);
+        for (const ChannelPlace& place : map.target().places()) replaced.insert(place.part);
+    }
+    uint64_t outside = 0;
+    for (const size_t part : replaced) outside += file.pixelsOutside(part);
+    if (outside > 0)
+        result.push_back(fmt::format("{}: {} pixels outside the display window (overscan) stay as they were",
+                                     file.name().string(), outside));
+    return result;
+}
+
+/// Some renderers show the sky where alpha is 0. At borders they mix it with surfaces, so that dividing by
+/// alpha would be wrong.
+bool showsBackground(const ShotLayers& layers) {
+    const std::vector<float>& alpha = layers.images.at("alpha").pixels;
+    const std::vector<float>& beauty = layers.images.at("beauty").pixels;
+    size_t empty = 0, lit = 0;
+    for (size_t p = 0; p < alpha.size(); ++p) {
+        if (alpha[p] > 0.0f) continue;
+        ++empty;
+        lit += std::any_of(&beauty[3 * p], &beauty[3 * p] + 3, [](float c) { return c > 0.0f; }) ? 1 : 0;
+    }
+    return 2 * lit > empty;  // lamps have no alpha, either
+}
+
+/// Known cameras take the shape of pixels into account.
+void warnOfPixelShape(LoadedFrame& frame, const LoadOptions& options) {
+    const float aspect = frame.file.pixelAspect();
+    const bool known = std::all_of(frame.layers.begin(), frame.layers.end(),
+                                   [](const ShotLayers& layers) { return layers.camera.has_value(); });
+    if (known || options.givesCameras || std::abs(aspect - 1.0f) < 1e-3f) return;
+    const std::string text = fmt::format(
+        "{}: pixels are {:.3g} times as wide as high; without --camera, they are taken for square",
+        frame.file.name().string(), aspect);
+    if (std::find(frame.warnings.begin(), frame.warnings.end(), text) == frame.warnings.end())
+        frame.warnings.push_back(text);
 }
 
 bool has(const image::ExrPart& part, const LayerInfo& layer) {
@@ -94,10 +189,13 @@ uint32_t samplesOf(const image::ExrDocument& file) {
     for (const image::ExrPart& part : file.parts()) {
         for (const auto& [name, text] : part.texts)
             if (name.ends_with(".samples")) std::from_chars(text.data(), text.data() + text.size(), samples);
-        for (const char* name : {"samplesPerPixel", "arnold/AA_samples"})
-            if (const auto found = part.numbers.find(name);
-                found != part.numbers.end() && found->second >= 1.0)
-                samples = static_cast<uint32_t>(std::min(found->second, 1e6));
+        const auto number = [&](const char* name) {
+            const auto found = part.numbers.find(name);
+            return found == part.numbers.end() ? 0.0 : std::max(found->second, 0.0);
+        };
+        const double perSide = number("arnold/AA_samples");
+        for (const double count : {number("samplesPerPixel"), perSide * perSide})
+            if (count >= 1.0) samples = static_cast<uint32_t>(std::min(count, 1e6));
     }
     return samples;
 }
@@ -109,14 +207,18 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
     std::vector<std::byte> bytes = readFile(path);
     content.addValues(bytes);
     LoadedFrame frame{.number = number, .file = openDocument(std::move(bytes), path)};
+    std::vector<image::PictureFormat> formats;
     for (const auto& [name, pattern] : options.files) {
         const std::filesystem::path file = pattern.format(std::max(number, 0));
-        const std::vector<std::byte> attached = readFile(file);
+        std::vector<std::byte> attached = readFile(file);
         content.addValues(attached);
-        frame.file.attach(name, layersOf(attached, file), file);
+        formats.push_back(image::formatOf(attached));
+        frame.file.attach(name, layersOf(std::move(attached), file), file);
     }
     frame.content = content.value();
     frame.maps = recognise(frame.file, options.assignments);
+    checkFormats(frame, options, formats);
+    frame.warnings = warningsOf(frame.file, frame.maps);
     const bool decodes = isDecodedAhead(frame.file);
     for (LayerMap& map : frame.maps) {
         if (decodes) decodeParts(frame.file, map);
@@ -157,10 +259,13 @@ void unpack(LoadedFrame& frame, const LoadOptions& options) {
         for (const LayerInfo& layer : frameLayers)
             if (layer.varianceInFiles) frame.estimated.push_back(&layer);
     for (const LayerMap& map : frame.maps) {
-        frame.layers.push_back(readLayers(frame.file, map));
-        frame.layers.back().camera = cameraOfAttributes(frame.file, map.view);
-        frame.layers.back().samples = samplesOf(frame.file);
+        ShotLayers& layers = frame.layers.emplace_back(readLayers(frame.file, map));
+        layers.camera = cameraOfAttributes(frame.file, map.view);
+        layers.samples = samplesOf(frame.file);
+        layers.isTransparent = layers.isTransparent && !showsBackground(layers);
+        if (options.network || !options.searchMotion) restoreZeroMotion(layers);
     }
+    warnOfPixelShape(frame, options);
 }
 
 }  // namespace limpid::shot

@@ -1,6 +1,7 @@
 #include "shot/frame/pixel_layers.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace limpid::shot {
@@ -67,6 +68,12 @@ class Normals {
     vec3 scale_;
     bool turned_;
 };
+
+/// Of light that is shown as it is.
+float limited(float value) {
+    if (std::isfinite(value)) return value;
+    return value > 0.0f ? largestHalf : 0.0f;
+}
 
 void copyColor(const Image* from, std::vector<float>& to) {
     if (!from) return std::fill(to.begin(), to.end(), 1.0f);
@@ -152,7 +159,7 @@ std::vector<float> distancesOf(const ShotLayers& layers, const Encoding& encodin
     forEachPixel(result.size(), [&](size_t p) {
         if (layers.isTransparent && !(alpha->pixels[p] > 0.0f)) return;
         const float z = depth ? depth->pixels[p] : 1.0f;
-        if (!isHit(z)) {
+        if (depth && !isHit(z)) {
             // The sample of the depth missed, but others did not.
             if (mean && layers.isTransparent && isHit(mean->pixels[p]))
                 result[p] = mean->pixels[p] / alpha->pixels[p];
@@ -188,6 +195,38 @@ double addLight(const ShotLayers& layers, const std::vector<float>& distance, Ho
         }
     });
     return two && balance.beauty > 0.0 ? 1.0 - rest / balance.beauty : 1.0;
+}
+
+void limitEmission(HostFrame& frame) {
+    forEachPixel(frame.pixelCount(), [&](size_t p) {
+        for (size_t at = 4 * p; at < 4 * p + 3; ++at) {
+            const bool infinite = frame.emission[at] == INFINITY;
+            frame.emission[at] = limited(frame.emission[at]);
+            if (!infinite) continue;
+            for (auto* texels : {&frame.diffuse, &frame.specular})
+                if (!texels->empty() && !std::isfinite((*texels)[at])) (*texels)[at] = 0.0f;
+        }
+    });
+}
+
+void limitUnfiltered(const HostFrame& frame, ShotLayers& layers) {
+    const auto limit = [&](Image& colors) {
+        forEachPixel(frame.pixelCount(), [&](size_t p) {
+            if (frame.depth[4 * p + 1] > 0.0f) return;
+            for (size_t i = 3 * p; i < 3 * p + 3; ++i) colors.pixels[i] = limited(colors.pixels[i]);
+        });
+    };
+    limit(layers.images.at("beauty"));
+    for (Image& group : layers.groups) limit(group);
+}
+
+uint64_t countNotFinite(const Image& colors) {
+    std::atomic<uint64_t> count = 0;
+    forEachPixel(colors.pixels.size() / 3, [&](size_t p) {
+        const float* const color = &colors.pixels[3 * p];
+        if (!std::all_of(color, color + 3, [](float value) { return std::isfinite(value); })) ++count;
+    });
+    return count;
 }
 
 void addAlbedo(const ShotLayers& layers, HostFrame& frame) {

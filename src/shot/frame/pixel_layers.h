@@ -12,6 +12,8 @@
 
 namespace limpid::shot {
 
+inline constexpr float largestHalf = 65504.0f;
+
 /// Calls action(p) for each of `count` pixels, on all cores.
 template <typename Action>
 void forEachPixel(size_t count, Action action) {
@@ -45,6 +47,14 @@ std::vector<float> distancesOf(const ShotLayers& layers, const Encoding& encodin
 /// Fills the frame's light: one signal or two, and emission. Returns the share of the beauty's energy that
 /// diffuse, specular and emission explain; the rest becomes specular.
 double addLight(const ShotLayers& layers, const std::vector<float>& distance, denoise::HostFrame& frame);
+/// Makes emission finite, as nobody filters it: infinite values (a sun's disc in half precision) become the
+/// largest half, other ones 0. Filtered light that is not finite stays, since denoisers leave it out; but
+/// what is left of an infinite beauty without infinite emission is 0.
+void limitEmission(denoise::HostFrame& frame);
+/// The same for the beauty and the light groups where nothing is hit.
+void limitUnfiltered(const denoise::HostFrame& frame, ShotLayers& layers);
+/// Pixels with a component that is NaN or infinite.
+uint64_t countNotFinite(const image::Image& colors);
 /// Fills albedos; white where the file has none.
 void addAlbedo(const ShotLayers& layers, denoise::HostFrame& frame);
 /// On transparent film, divides light and albedo by alpha.

@@ -1,5 +1,6 @@
 #include "shot/frame/shot_frame.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for_each.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "shot/estimate/emitters.h"
 #include "shot/estimate/reflection_motion.h"
 #include "shot/frame/pixel_layers.h"
+#include "shot/motion/motion_search.h"
 
 namespace limpid::shot {
 namespace {
@@ -101,6 +103,29 @@ void freeRoles(ShotLayers& layers, std::initializer_list<const char*> which) {
     for (const char* role : which) layers.images.erase(role);
 }
 
+bool isZero(const Image& image) {
+    return std::all_of(image.pixels.begin(), image.pixels.end(), [](float value) { return value == 0.0f; });
+}
+
+/// A depth that is nowhere above 0 would make all pixels background, which is not denoised. It is right where
+/// the normals are 0, too: the frame shows the sky.
+void dropEmptyDepth(ShotLayers& layers) {
+    const Image* const depth = layers.find("depth");
+    const Image* const normal = layers.find("normal");
+    if (!depth || (normal && isZero(*normal))) return;
+    if (std::any_of(depth->pixels.begin(), depth->pixels.end(), [](float z) { return z > 0.0f; })) return;
+    layers.images.erase("depth");
+    layers.problems.push_back(fmt::format(
+        "the layer 'depth' has no value above 0, so it is taken as missing: {}", findRole("depth")->without));
+}
+
+void dropZeroMotion(ShotLayers& layers) {
+    const Image* const motion = layers.find("motion");
+    if (!motion || !isZero(*motion)) return;
+    layers.images.erase("motion");
+    layers.zeroMotion = true;
+}
+
 }  // namespace
 
 void decodeParts(image::ExrDocument& file, const LayerMap& map) {
@@ -127,8 +152,18 @@ ShotLayers readLayers(image::ExrDocument& file, const LayerMap& map) {
     if (const Image* const alpha = layers.find("alpha"))
         layers.isTransparent = std::any_of(alpha->pixels.begin(), alpha->pixels.end(),
                                            [](float share) { return share < 0.999f; });
+    dropEmptyDepth(layers);
+    dropZeroMotion(layers);
     return layers;
 }
+
+void restoreZeroMotion(ShotLayers& layers) {
+    if (layers.zeroMotion) layers.images["motion"] = Image(layers.width, layers.height, 2, 0.0f);
+    layers.zeroMotion = false;
+}
+
+FrameConverter::FrameConverter(LayerMap map) : map_(std::move(map)) {}
+FrameConverter::~FrameConverter() = default;
 
 std::optional<CameraParams> FrameConverter::locatedCamera(const ShotLayers& layers) const {
     const Image* const position = layers.find("position");
@@ -166,7 +201,7 @@ CameraParams FrameConverter::solvedCamera(const ShotLayers& layers) {
     const vec3 eye = last_ ? last_->camera.origin : vec3(0.0f);
     const mat3 axes = turn.value_or(before);
     if (!depth || !layers.find("motion") || !continues_) return cameraWith(axes, eye, t, layers);
-    if (map_.searchesMotion) {  // too coarse to tell how the camera moves
+    if (map_.searchesMotion || layers.motionSearched) {  // too coarse to tell how the camera moves
         report_.camera = CameraSource::Supposed;
         return cameraWith(axes, eye, t, layers);
     }
@@ -218,13 +253,21 @@ denoise::HostFrame FrameConverter::convertAlone(const ShotLayers& layers,
     return frame;
 }
 
+void FrameConverter::replaceZeroMotion(ShotLayers& layers, bool continues) {
+    if (!layers.zeroMotion) return search_.reset();
+    if (!search_) search_ = std::make_unique<MotionSearch>();
+    search_->replaceZero(layers, map_.encoding, continues);
+}
+
 denoise::HostFrame FrameConverter::convertUsingUp(ShotLayers& layers,
                                                   const std::optional<CameraParams>& given, bool continues,
                                                   bool alone) {
+    replaceZeroMotion(layers, continues);
     used_ = &layers;
     denoise::HostFrame frame =
         alone ? convertAlone(layers, given, continues) : convert(layers, given, continues);
     used_ = nullptr;
+    if (!layers.groups.empty()) limitUnfiltered(frame, layers);
     std::erase_if(layers.images,
                   [](const auto& layer) { return layer.first != "beauty" && layer.first != "alpha"; });
     return frame;
@@ -245,6 +288,10 @@ denoise::HostFrame FrameConverter::convert(const ShotLayers& layers, const std::
     if (!layers.find("emission")) hideEmitters(layers, view.distance);
     report_.lightShare = addLight(layers, view.distance, frame);
     addMirroredEmission(layers, map_.encoding, view.distance, frame);
+    limitEmission(frame);
+    report_.notFinite = countNotFinite(layers.images.at("beauty"));
+    report_.motionSearched = layers.motionSearched;
+    report_.problems = layers.problems;
     addAlbedo(layers, frame);
     divideByAlpha(layers, view.distance, frame);
     if (used_) freeRoles(*used_, {"diffuse", "specular", "emission", "background", "mirroredEmission"});

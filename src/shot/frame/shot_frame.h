@@ -22,6 +22,11 @@ struct ShotLayers {
     std::optional<CameraParams> camera;                       ///< of the file's attributes
     uint32_t samples = 0;                                     ///< per pixel; 0: unknown
     std::vector<image::Image> groups;                         ///< of light
+    /// The file's motion vectors are all 0, so `images` has no motion: nothing moves, or the renderer wrote
+    /// none (Blender with motion blur).
+    bool zeroMotion = false;
+    bool motionSearched = false;        ///< `images` has motion that was found instead; see MotionSearch
+    std::vector<std::string> problems;  ///< why layers of the file are not used, for the user
 
     const image::Image* find(std::string_view role) const {
         const auto found = images.find(role);
@@ -31,7 +36,11 @@ struct ShotLayers {
 
 /// Decodes the parts that the map's layers lie in.
 void decodeParts(image::ExrDocument& file, const LayerMap& map);
+/// Leaves out layers that say nothing: motion that is 0 everywhere (ShotLayers::zeroMotion), and depth
+/// without a value above 0 where normals tell of surfaces (ShotLayers::problems).
 ShotLayers readLayers(image::ExrDocument& file, const LayerMap& map);
+/// Believes vectors that are all 0: puts them back.
+void restoreZeroMotion(ShotLayers& layers);
 
 /// Where a frame's camera is from.
 enum class CameraSource {
@@ -43,15 +52,21 @@ enum class CameraSource {
 /// What is known of a frame's view, for messages.
 struct FrameReport {
     CameraSource camera = CameraSource::Supposed;
-    float inliers = 0.0f;        ///< of a solved movement: the share of points that agree
-    float horizontalFov = 0.0f;  ///< degrees; 0 for an orthographic camera
-    double lightShare = 1.0;     ///< of the beauty's energy: what diffuse, specular and emission explain
+    float inliers = 0.0f;         ///< of a solved movement: the share of points that agree
+    float horizontalFov = 0.0f;   ///< degrees; 0 for an orthographic camera
+    double lightShare = 1.0;      ///< of the beauty's energy: what diffuse, specular and emission explain
+    uint64_t notFinite = 0;       ///< pixels whose beauty is NaN or infinite
+    bool motionSearched = false;  ///< ShotLayers::motionSearched
+    std::vector<std::string> problems;  ///< for the user; the same texts for each frame with such a problem
 };
+
+class MotionSearch;
 
 /// Converts the frames of one picture of a shot, in order.
 class FrameConverter {
   public:
-    explicit FrameConverter(LayerMap map) : map_(std::move(map)) {}
+    explicit FrameConverter(LayerMap map);
+    ~FrameConverter();
 
     /// `given`: the camera, if it is known otherwise. `continues`: the last frame that was converted is the
     /// one before; else all motion is invalid. Missing layers become what the denoisers take for missing:
@@ -68,7 +83,9 @@ class FrameConverter {
                                     bool continues);
 
     /// convert(), or convertAlone() if `alone`, for frames whose layers nobody else needs: frees all but the
-    /// beauty and alpha, those of light before those of geometry are made.
+    /// beauty and alpha, those of light before those of geometry are made. If the motion is 0 everywhere
+    /// although the picture changes, it is searched: it then leads to the frame of the last call, also if
+    /// `alone` (FrameReport::motionSearched). Light that is not filtered becomes finite in the layers, too.
     denoise::HostFrame convertUsingUp(ShotLayers& layers, const std::optional<CameraParams>& given,
                                       bool continues, bool alone);
 
@@ -84,13 +101,15 @@ class FrameConverter {
     std::optional<CameraParams> locatedCamera(const ShotLayers& layers) const;
     CameraParams solvedCamera(const ShotLayers& layers);
     void addMotion(const ShotLayers& layers, const View& view, denoise::HostFrame& frame) const;
+    void replaceZeroMotion(ShotLayers& layers, bool continues);
 
     LayerMap map_;
     FrameReport report_;
     std::optional<View> last_;
     bool continues_ = false;
     bool alone_ = false, reflects_ = false;
-    ShotLayers* used_ = nullptr;  ///< in convertUsingUp()
+    ShotLayers* used_ = nullptr;            ///< in convertUsingUp()
+    std::unique_ptr<MotionSearch> search_;  ///< while vectors are all 0
 };
 
 }  // namespace limpid::shot

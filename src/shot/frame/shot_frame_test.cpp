@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "shaders/common/scene_layout.h"
+#include "shot/layers/recognise.h"
 #include "shot/motion_check.h"
+#include "shot/run/packed_picture.h"
 #include "shot/shot_denoiser.h"
 
 namespace limpid::shot {
@@ -196,6 +198,86 @@ TEST(ShotFrame, MergedPicturesFollowTheLongerHistory) {
         .beauty = {5, 5, 5, 1, 5, 5, 5, 1}, .frames = {3, 4}, .report = {}, .disocclusion = {}};
     merge(a, b);
     EXPECT_THAT(a.beauty, testing::ElementsAre(4, 4, 4, 1, 3, 3, 3, 1));
+}
+
+TEST(ShotFrame, WhatIsTooBrightToBePackedIsThatOfTheOtherDirection) {
+    CleanPicture a{.beauty = {1e5f, 1, 1, 1, 2, 2, 2, 1}, .frames = {1, 1}, .report = {}, .disocclusion = {}};
+    CleanPicture b{.beauty = {1e5f, 9, 9, 1, 4, 4, 4, 1}, .frames = {9, 1}, .report = {}, .disocclusion = {}};
+    merge(a, PackedPicture(b).unpacked());
+    EXPECT_THAT(a.beauty, testing::ElementsAre(1e5f, 1, 1, 1, 3, 3, 3, 1));
+}
+
+TEST(ShotFrame, InfiniteLightThatIsNotFilteredIsTheLargestHalf) {
+    FrameConverter converter(planar());
+    const CameraParams camera = cameraAt(0).params(columns, rows);
+    ShotLayers layers = layersOf();
+    Image& beauty = layers.images["beauty"];
+    beauty.at(5, 0, 0) = INFINITY;
+    beauty.at(6, 0, 0) = -INFINITY;
+    beauty.at(7, 0, 0) = NAN;
+    beauty.at(5, 9, 0) = beauty.at(6, 9, 0) = INFINITY;
+    layers.images["emission"] = filled(3, 0.0f);
+    layers.images["emission"].at(6, 9, 0) = INFINITY;
+    layers.groups = {beauty};
+    const HostFrame frame = converter.convertUsingUp(layers, camera, false, false);
+    EXPECT_EQ(frame.emission[4 * at(5, 0)], 65504.0f) << "the sun";
+    EXPECT_EQ(frame.emission[4 * at(6, 0)], 0.0f);
+    EXPECT_EQ(frame.emission[4 * at(7, 0)], 0.0f);
+    EXPECT_TRUE(std::isinf(frame.diffuse[4 * at(5, 9)])) << "noise: denoisers leave it out";
+    EXPECT_EQ(frame.diffuse[4 * at(6, 9)], 0.0f);
+    EXPECT_EQ(frame.emission[4 * at(6, 9)], 65504.0f) << "a lamp";
+    EXPECT_EQ(layers.groups[0].at(5, 0, 0), 65504.0f);
+    EXPECT_EQ(converter.report().notFinite, 5u);
+}
+
+TEST(ShotFrame, AnInfiniteLampIsFoundWithoutOtherLayers) {
+    ShotLayers layers = layersOf();
+    for (const char* role : {"depth", "normal"}) layers.images.erase(role);
+    for (uint32_t y = 9; y < 13; ++y)
+        for (uint32_t i = 0; i < 12; ++i) layers.images["beauty"].at(5 + i / 3, y, i % 3) = INFINITY;
+    const HostFrame frame =
+        FrameConverter(planar()).convert(layers, cameraAt(0).params(columns, rows), false);
+    EXPECT_EQ(frame.emission[4 * at(6, 10)], 65504.0f);
+    EXPECT_EQ(frame.emission[4 * at(20, 20)], 0.0f);
+}
+
+/// Of a file with a beauty, normals, a depth and motion.
+ShotLayers readBack(float depth, float normal, float motion) {
+    image::LayeredImage file;
+    file.width = columns;
+    file.height = rows;
+    file.add("", "RGB", filled(3, 1.0f), image::Storage::Float);
+    file.add("normal", "XYZ", filled(3, normal), image::Storage::Float);
+    file.add("depth", "Z", filled(1, depth), image::Storage::Float);
+    file.add("motion", "XY", filled(2, motion), image::Storage::Float);
+    image::ExrDocument document = image::ExrDocument::of(file, "a.exr");
+    return readLayers(document, recognise(document, {}).at(0));
+}
+
+TEST(ReadLayers, ADepthWithoutValuesIsMissing) {
+    EXPECT_TRUE(readBack(4.0f, 0.5f, 1.0f).find("depth"));
+    for (const float depth : {0.0f, -4.0f, NAN}) {
+        const ShotLayers layers = readBack(depth, 0.5f, 1.0f);
+        EXPECT_FALSE(layers.find("depth")) << depth;
+        EXPECT_THAT(layers.problems, testing::ElementsAre(testing::HasSubstr("no value above 0")));
+        const HostFrame frame =
+            FrameConverter(planar()).convert(layers, cameraAt(0).params(columns, rows), false);
+        EXPECT_EQ(frame.depth[4 * at(5, 9) + 1], 1.0f) << "it is denoised";
+    }
+    const ShotLayers sky = readBack(0.0f, 0.0f, 1.0f);
+    EXPECT_TRUE(sky.find("depth")) << "there are no normals either";
+    EXPECT_TRUE(sky.problems.empty());
+}
+
+TEST(ReadLayers, MotionThatIsZeroEverywhereIsNotBelieved) {
+    EXPECT_FALSE(readBack(4.0f, 0.5f, 1.0f).zeroMotion);
+    ShotLayers layers = readBack(4.0f, 0.5f, 0.0f);
+    EXPECT_TRUE(layers.zeroMotion);
+    EXPECT_FALSE(layers.find("motion"));
+    restoreZeroMotion(layers);
+    EXPECT_FALSE(layers.zeroMotion);
+    ASSERT_TRUE(layers.find("motion"));
+    EXPECT_EQ(layers.find("motion")->at(5, 9, 1), 0.0f);
 }
 
 TEST(MotionCheck, RightMotionExplainsTheChangeAndWrongMotionIsNoticed) {

@@ -100,11 +100,21 @@ ChannelTable::ChannelTable(std::span<const image::ExrPart> parts, const std::str
         const ChannelPlace place{channel.part, channel.source->name, channel.source->storage};
         if (!channels_.emplace(name, place).second) continue;
         const ChannelName pieces = split(name);
+        if (part.attached) addAttached(channel.part, partName(part, view), pieces);
         LayerChannels& layer = byName[std::string(pieces.layer)];
         layer.name = pieces.layer;
         layer.components.emplace_back(pieces.component);
     }
     for (auto& [name, layer] : byName) layers_.push_back(std::move(layer));
+}
+
+void ChannelTable::addAttached(size_t part, std::string partName, const ChannelName& channel) {
+    auto found = std::find_if(attached_.begin(), attached_.end(), [&](const AttachedLayer& layer) {
+        return layer.part == part && layer.channels.name == channel.layer;
+    });
+    if (found == attached_.end())
+        found = attached_.insert(found, {part, std::move(partName), {std::string(channel.layer), {}}});
+    found->channels.components.emplace_back(channel.component);
 }
 
 const ChannelPlace* ChannelTable::find(std::string_view name) const {

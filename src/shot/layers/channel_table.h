@@ -25,6 +25,21 @@ struct LayerChannels {
     std::vector<std::string> components;  ///< what follows the last dot, in the file's order
 };
 
+/// A layer of an attached part.
+struct AttachedLayer {
+    size_t part = 0;
+    std::string partName;    ///< without its view
+    LayerChannels channels;  ///< the name begins with the part's; without channels that another part hides
+};
+
+/// "Combined.R": the layer "Combined", the component "R". The layer is empty without a dot.
+struct ChannelName {
+    std::string_view layer, component;
+};
+ChannelName split(std::string_view channel);
+/// The opposite.
+std::string joined(std::string_view layer, std::string_view component);
+
 /// A channel's name is that in its part. If several parts have it, or if it has no layer ("R") and lies in
 /// another part than the first, the part's name and a dot precede it: "albedo.R". Unreadable parts are left
 /// out. Attached parts always have their name before, and hide channels of that name.
@@ -39,10 +54,15 @@ class ChannelTable {
     const std::vector<LayerChannels>& layers() const { return layers_; }
     /// Returns null if there is no layer of this name.
     const LayerChannels* layer(std::string_view name) const;
+    /// Those of attached parts alone; layers() has them, too.
+    const std::vector<AttachedLayer>& attached() const { return attached_; }
 
   private:
+    void addAttached(size_t part, std::string partName, const ChannelName& channel);
+
     std::map<std::string, ChannelPlace, std::less<>> channels_;
     std::vector<LayerChannels> layers_;
+    std::vector<AttachedLayer> attached_;
 };
 
 /// The views of a stereo (or multi-view) file, the default view first; empty if the file has none. The names
@@ -52,13 +72,5 @@ class ChannelTable {
 ///   - else "layer.view.channel", and "view.channel", are of that view;
 ///   - else all is of the default view, unless the part's name ends with another view ("albedo.right").
 std::vector<std::string> viewsOf(std::span<const image::ExrPart> parts);
-
-/// "Combined.R": the layer "Combined", the component "R". The layer is empty without a dot.
-struct ChannelName {
-    std::string_view layer, component;
-};
-ChannelName split(std::string_view channel);
-/// The opposite.
-std::string joined(std::string_view layer, std::string_view component);
 
 }  // namespace limpid::shot

@@ -41,7 +41,6 @@ std::vector<Rule> cyclesRules() {
         {"depth", "Depth.?"},
         {"depth", "Denoising Depth.?"},
         {"distance", "Denoising Depth.?"},
-        {"alpha", "Combined.A"},
         {"position", "Position.XYZ"},
         {"motion", "Vector.XY"},
         {"id", "IndexOB.?"},
@@ -55,18 +54,21 @@ void normalInCamera(Encoding& e) {
     e.normalScale = {1.0f, 1.0f, -1.0f};
 }
 
-void planarDepth(Encoding& e) {
-    e.depthKind = DepthKind::Planar;
+void depthAlongTheRay(Encoding& e) {
+    e.depthKind = DepthKind::Distance;
 }
 
 Convention cycles() {
     Convention c{.renderer = "Cycles (Blender)",
                  .beauties = {"Combined.RGB"},
                  .rules = cyclesRules(),
-                 .encodingRules = {{"depth", "Depth.?", planarDepth},
+                 .encodingRules = {{"depth", "Denoising Depth.?", depthAlongTheRay},
                                    {"normal", "Denoising Normal.XYZ", normalInCamera}},
-                 .group = "Combined_"};
+                 .group = "Combined_",
+                 .noisy = "Noisy Image.RGB",
+                 .composite = "Composite."};
     c.encoding.worldUp = UpAxis::Z;
+    c.encoding.depthKind = DepthKind::Planar;
     c.encoding.cameraNormalScale = {1.0f, 1.0f, -1.0f};
     c.encoding.motionScale = {1.0f, -1.0f};  // y points up
     return c;
@@ -130,7 +132,8 @@ Convention renderMan() {
                            {"depth", "z.?"},
                            {"depth", "z"},
                            {"motion", "motionBack.XY"},
-                           {"motion", "backward.XY"}},
+                           {"motion", "backward.XY"},
+                           {"alpha", "a"}},
                  .group = "Ci_"};
     normalInCamera(c.encoding);
     c.encoding.depthKind = DepthKind::Planar;
@@ -152,7 +155,8 @@ Convention pbrt() {
     return c;
 }
 
-/// Its users choose the layers' names, so these are the usual ones; a distance is known by its component.
+/// Its users choose the layers' names, so these are the usual ones; a distance is known by its component. So
+/// is an index, but only a shape's is an object's: prim_index is another one for each triangle.
 Convention mitsuba() {
     return {.renderer = "Mitsuba 3",
             .beauties = {"RGB"},
@@ -165,7 +169,9 @@ Convention mitsuba() {
                       {"normal", "normals.XYZ"},
                       {"normal", "geo_normal.XYZ"},
                       {"depth", "*.T"},
-                      {"id", "*.I"}}};
+                      {"id", "shape_index.I"},
+                      {"id", "shape.I"},
+                      {"id", "id.I"}}};
 }
 
 Convention karma() {

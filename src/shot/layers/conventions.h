@@ -24,16 +24,19 @@ struct EncodingRule {
 
 struct Convention {
     std::string_view renderer;
-    /// The beauty: a file has a picture for each layer that ends so.
+    /// The beauty: a file has a picture for each layer that ends so. Its component A is alpha.
     std::vector<std::string_view> beauties;
     /// One of these must exist as well, unless there are none: a layer, or an attribute after '@' ("@name",
-    /// or
-    /// "@name=beginning of its text").
+    /// or "@name=beginning of its text").
     std::vector<std::string_view> evidence{};
     std::vector<Rule> rules;
     Encoding encoding{};
     std::vector<EncodingRule> encodingRules{};
     std::string_view group{};  ///< how layers of light groups begin: "Combined_"; empty if there are none
+    /// The noisy beauty of files whose beauty the renderer has denoised itself; empty if there is none.
+    std::string_view noisy{};
+    /// The prefix of a picture that was made of the others; empty if there is none.
+    std::string_view composite{};
 };
 
 /// From the most to the least specific; the last fits every file with colours.

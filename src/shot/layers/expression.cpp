@@ -177,6 +177,14 @@ std::string LayerExpression::text() const {
     return result;
 }
 
+std::vector<ChannelPlace> LayerExpression::places() const {
+    std::vector<ChannelPlace> result;
+    for (const Term& term : terms_)
+        for (const Factor& factor : term.factors)
+            result.insert(result.end(), factor.channels.begin(), factor.channels.end());
+    return result;
+}
+
 uint32_t LayerExpression::components() const {
     size_t most = 0;
     for (const Term& term : terms_)

@@ -45,6 +45,8 @@ class LayerExpression {
     /// As it was resolved.
     std::string text() const;
     const std::vector<Term>& terms() const { return terms_; }
+    /// All channels that it reads.
+    std::vector<ChannelPlace> places() const;
     /// The number of components of the result.
     uint32_t components() const;
     /// Computes the picture. A factor of one component multiplies all.

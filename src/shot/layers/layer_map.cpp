@@ -27,19 +27,19 @@ constexpr std::array roleTable{
              "lamps are found by their even brightness, textured ones are filtered with the light", 3, false},
     RoleInfo{"albedo", "textures are blurred like noise", 3, true},
     RoleInfo{"albedoSpecular", "textures in reflections, and coloured metal, are blurred", 3, false},
-    RoleInfo{"normal", "edges between surfaces of one colour are blurred", 3, true},
+    RoleInfo{"normal", "edges between surfaces of one colour are blurred", 3, true, RoleValues::Exact},
     RoleInfo{"depth", "edges between parallel surfaces are blurred, and hidden ones may leave ghosts", 1,
-             true},
-    RoleInfo{"motion", "each frame is denoised alone, so the shot flickers", 2, true},
-    RoleInfo{"id", "objects that touch share their light at the edge", 1, false},
-    RoleInfo{"roughness", "glossy and rough reflections are filtered alike", 1, false},
-    RoleInfo{"alpha", "", 1, false},
+             true, RoleValues::Amounts},
+    RoleInfo{"motion", "each frame is denoised alone, so the shot flickers", 2, true, RoleValues::Exact},
+    RoleInfo{"id", "objects that touch share their light at the edge", 1, false, RoleValues::Exact},
+    RoleInfo{"roughness", "glossy and rough reflections are filtered alike", 1, false, RoleValues::Amounts},
+    RoleInfo{"alpha", "", 1, false, RoleValues::Amounts},
     RoleInfo{"albedoReflected", "", 3, false},
     RoleInfo{"mirroredEmission", "", 3, false},
     RoleInfo{"background", "", 3, false},
-    RoleInfo{"position", "", 3, false},
-    RoleInfo{"distance", "", 1, false},
-    RoleInfo{"cameraNormal", "", 3, false},
+    RoleInfo{"position", "", 3, false, RoleValues::Exact},
+    RoleInfo{"distance", "", 1, false, RoleValues::Amounts},
+    RoleInfo{"cameraNormal", "", 3, false, RoleValues::Exact},
     RoleInfo{"seenAlbedo", "", 3, false},
 };
 
@@ -94,6 +94,10 @@ void setEncoding(Encoding& e, std::string_view key, std::string_view value) {
 void setRole(LayerMap& map, const RoleInfo& role, const std::string& value, const ChannelTable& table,
              const std::filesystem::path& file) {
     map.layers.erase(std::string(role.name));
+    if (role.name == "beauty") {  // who names it has chosen what is cleaned
+        map.replaced.reset();
+        map.remarks.clear();
+    }
     if (value.empty()) return;
     auto expression = LayerExpression::resolve(value, table, map.prefix);
     if (!expression) expression = LayerExpression::resolve(value, table);
@@ -114,6 +118,17 @@ std::string textOf(const nlohmann::json& value) {
 }
 
 }  // namespace
+
+bool LayerMap::uses(size_t part) const {
+    const auto reads = [&](const LayerExpression& expression) {
+        const std::vector<ChannelPlace> places = expression.places();
+        return std::any_of(places.begin(), places.end(),
+                           [&](const ChannelPlace& place) { return place.part == part; });
+    };
+    return std::any_of(layers.begin(), layers.end(),
+                       [&](const auto& layer) { return reads(layer.second); }) ||
+           std::any_of(groups.begin(), groups.end(), reads);
+}
 
 std::span<const RoleInfo> roles() {
     return roleTable;

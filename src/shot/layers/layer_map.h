@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,7 +43,15 @@ struct Encoding {
     float noMotion = 9e9f;  ///< components from here on are no motion
 };
 
+/// What a role's values are; not each format of pictures holds all of them.
+enum class RoleValues {
+    Colors,
+    Amounts,  ///< from 0 on, not of light
+    Exact,    ///< with signs, or whole numbers
+};
+
 /// What `limpid denoise` reads. Only beauty is needed. The roles without `without` help:
+///   - `alpha` is the coverage of transparent film, by which colours were multiplied.
 ///   - `background` is light that belongs to the beauty unless the film is transparent, which the sum tells.
 ///   - Where depth is missing (the one sample that it is from saw the background), `distance` divided by
 ///     `alpha` replaces it. `distance` is along the ray, from the near plane, and goes on behind mirrors and
@@ -56,6 +65,7 @@ struct RoleInfo {
     std::string_view without;  ///< what is lost if the file has no such layer; empty if little is
     uint32_t components;
     bool isImportant;  ///< worth a warning
+    RoleValues values = RoleValues::Colors;
 };
 std::span<const RoleInfo> roles();
 /// Returns null if there is no such role.
@@ -70,6 +80,9 @@ struct LayerMap {
     std::map<std::string, LayerExpression, std::less<>> layers;  ///< by role
     Encoding encoding;
     bool searchesMotion = false;  ///< the file has none: it is searched on albedo and normals
+    /// The layer that the clean beauty replaces; none: that of the role "beauty".
+    std::optional<LayerExpression> replaced;
+    std::vector<std::string> remarks;  ///< on how the file was understood, for the user
     /// Light groups: colours by group of lamps, whose sum is (nearly) the beauty.
     std::vector<LayerExpression> groups;
 
@@ -77,6 +90,10 @@ struct LayerMap {
         const auto found = layers.find(role);
         return found == layers.end() ? nullptr : &found->second;
     }
+    /// The layer that the clean beauty replaces.
+    const LayerExpression& target() const { return replaced ? *replaced : layers.at("beauty"); }
+    /// Whether it reads a channel of this part.
+    bool uses(size_t part) const;
 };
 
 /// Says what it costs that the picture lacks a role.

@@ -1,8 +1,11 @@
 #include "shot/layers/recognise.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error.h"
+#include "shot/layers/attached_roles.h"
 #include "shot/layers/conventions.h"
 
 namespace limpid::shot {
@@ -42,14 +45,44 @@ bool fits(const Convention& convention, const image::ExrDocument& file, const Ch
     });
 }
 
+/// Alpha is the fourth component of the beauty's layer. All renderers multiply colours by it.
+void addAlpha(const ChannelTable& table, std::string_view layer, LayerMap& map) {
+    const ChannelPlace beauty = map.layers.at("beauty").places().front();
+    for (const char* name : {"A", "a", "alpha", "Alpha"}) {
+        if (map.find("alpha")) return;
+        auto alpha = LayerExpression::resolve(joined(layer, name), table, map.prefix);
+        // Of the parts' channels "R" and "A", only those that several parts have are named after their part.
+        if (!alpha && split(beauty.channel).layer.empty()) alpha = LayerExpression::resolve(name, table);
+        if (alpha && alpha->places().front().part == beauty.part)
+            map.layers.emplace("alpha", std::move(*alpha));
+    }
+}
+
+/// Blender keeps the noisy picture beside the one that it has denoised, which cannot be cleaned well: its
+/// noise is in blotches, and it is not the sum of the layers of light.
+void preferNoisy(const Convention& convention, const ChannelTable& table, LayerMap& map) {
+    if (convention.noisy.empty()) return;
+    auto noisy = LayerExpression::resolve(convention.noisy, table, map.prefix);
+    if (!noisy) return;
+    map.replaced = map.layers.at("beauty");
+    map.remarks.push_back(
+        fmt::format("'{}' is denoised already; '{}' is cleaned instead, and takes its place",
+                    split(map.replaced->text()).layer, split(noisy->text()).layer));
+    map.layers.insert_or_assign("beauty", std::move(*noisy));
+}
+
+/// `layer`: the beauty's, without the prefix.
 LayerMap mapOf(const Convention& convention, const ChannelTable& table, const std::string& prefix,
-               LayerExpression beauty) {
+               std::string_view layer, LayerExpression beauty) {
     LayerMap map;
     map.prefix = prefix;
     map.title = prefix.empty() ? "" : prefix.substr(0, prefix.size() - 1);
     map.renderer = convention.renderer;
     map.encoding = convention.encoding;
     map.layers.emplace("beauty", std::move(beauty));
+    addAttachedRoles(table, map);
+    addAlpha(table, layer, map);
+    preferNoisy(convention, table, map);
     for (const Rule& rule : convention.rules) {
         if (map.find(rule.role)) continue;
         auto expression = LayerExpression::resolve(rule.expression, table, prefix, rule.partial);
@@ -59,12 +92,35 @@ LayerMap mapOf(const Convention& convention, const ChannelTable& table, const st
             if (change.role == rule.role && change.expression == rule.expression) change.set(map.encoding);
     }
     const std::string group = prefix + std::string(convention.group);
-    for (const LayerChannels& layer : table.layers()) {
-        if (convention.group.empty() || !layer.name.starts_with(group)) continue;
-        auto expression = LayerExpression::resolve(layer.name + ".RGB", table);
+    for (const LayerChannels& each : table.layers()) {
+        if (convention.group.empty() || !each.name.starts_with(group)) continue;
+        auto expression = LayerExpression::resolve(each.name + ".RGB", table);
         if (expression && expression->components() == 3) map.groups.push_back(std::move(*expression));
     }
     return map;
+}
+
+/// A picture that was made of the others has no guides. It was made of noise, and making it again of the
+/// clean ones is better than cleaning it.
+void dropComposite(const Convention& convention, std::vector<LayerMap>& maps) {
+    const auto composite = std::find_if(maps.begin(), maps.end(), [&](const LayerMap& map) {
+        return !convention.composite.empty() && map.prefix == convention.composite;
+    });
+    if (composite == maps.end()) return;
+    const bool hasBetter = std::any_of(maps.begin(), maps.end(), [&](const LayerMap& map) {
+        return map.replaced || map.layers.size() > composite->layers.size();
+    });
+    if (!hasBetter) return;
+    const std::string title = composite->title;
+    maps.erase(composite);
+    maps.front().remarks.push_back(
+        fmt::format("'{}' stays as it was: the compositor made it of the noisy layers", title));
+}
+
+bool isAttached(const image::ExrDocument& file, const LayerExpression& expression) {
+    const std::vector<ChannelPlace> places = expression.places();
+    return std::any_of(places.begin(), places.end(),
+                       [&](const ChannelPlace& place) { return file.parts()[place.part].attached; });
 }
 
 std::vector<LayerMap> mapsBy(const Convention& convention, const image::ExrDocument& file,
@@ -75,11 +131,12 @@ std::vector<LayerMap> mapsBy(const Convention& convention, const image::ExrDocum
         for (const std::string& prefix : prefixesOf(table, layer)) {
             if (!fits(convention, file, table, prefix)) continue;
             auto expression = LayerExpression::resolve(beauty, table, prefix);
-            if (expression && expression->components() == 3)
-                maps.push_back(mapOf(convention, table, prefix, std::move(*expression)));
+            if (expression && expression->components() == 3 && !isAttached(file, *expression))
+                maps.push_back(mapOf(convention, table, prefix, layer, std::move(*expression)));
         }
         if (!maps.empty()) break;
     }
+    dropComposite(convention, maps);
     return maps;
 }
 
@@ -119,18 +176,23 @@ std::vector<LayerMap> recognise(const image::ExrDocument& file, const Assignment
     std::vector<std::string> views = viewsOf(file.parts());
     if (views.empty()) views.emplace_back();
     std::vector<LayerMap> result;
+    std::vector<ChannelTable> tables;
     for (const std::string& view : views) {
-        const ChannelTable table(file.parts(), view);
+        const ChannelTable& table = tables.emplace_back(file.parts(), view);
         std::vector<LayerMap> maps = mapsOfView(file, table, view);
         const bool nothing = maps.empty() && result.empty() && &view == &views.back();
         if (nothing) requireBeauty(file, assignments);
-        if (nothing || (maps.empty() && namesBeauty(assignments, table))) maps.emplace_back().view = view;
+        if (nothing || (maps.empty() && namesBeauty(assignments, table))) {
+            maps.emplace_back().view = view;
+            addAttachedRoles(table, maps.back());
+        }
         for (LayerMap& map : maps) {
             apply(assignments, table, file.name(), map);
             if (!map.find("beauty")) throw UsageError("--map: the beauty is needed");
             result.push_back(std::move(map));
         }
     }
+    requireAttached(file, tables, result);
     return result;
 }
 

@@ -91,6 +91,39 @@ TEST_F(RecogniseTest, EachViewLayerIsAPicture) {
     EXPECT_EQ(textOf(maps[1], "depth"), "B.Depth.Z");
 }
 
+/// The compositor's result has no guides, and sorts before the layers that it was made of.
+TEST_F(RecogniseTest, BlendersCompositeIsLeftAsItWas) {
+    const std::vector<std::string> composite = names("R G B A", "Composite.Combined.");
+    const auto document = file({{.channels = joined({composite, cyclesChannels("ViewLayer.")})}});
+    auto maps = recognise(document, {});
+    ASSERT_EQ(maps.size(), 1u);
+    EXPECT_EQ(maps[0].title, "ViewLayer");
+    ASSERT_EQ(maps[0].remarks.size(), 1u);
+    EXPECT_THAT(maps[0].remarks[0], HasSubstr("'Composite' stays as it was"));
+    maps = recognise(document, {{"beauty", "Composite.Combined.RGB"}});
+    EXPECT_EQ(textOf(maps.at(0), "beauty"), "Composite.Combined.RGB");
+    EXPECT_THAT(maps[0].remarks, testing::IsEmpty());
+    maps = recognise(file({{.channels = composite}}), {});
+    EXPECT_EQ(maps.at(0).title, "Composite") << "there is nothing better";
+    EXPECT_THAT(maps[0].remarks, testing::IsEmpty());
+}
+
+TEST_F(RecogniseTest, BlendersNoisyImageIsCleanedInPlaceOfItsOwnCleanOne) {
+    const auto document =
+        file({{.channels = joined({names("R G B A", "Composite.Combined."), names("R G B A", "V.Combined."),
+                                   names("R G B A", "V.Noisy Image.")})}});
+    auto maps = recognise(document, {});
+    ASSERT_EQ(maps.size(), 1u);
+    EXPECT_EQ(textOf(maps[0], "beauty"), "V.Noisy Image.RGB");
+    EXPECT_EQ(textOf(maps[0], "alpha"), "V.Combined.A");
+    EXPECT_EQ(maps[0].target().text(), "V.Combined.RGB");
+    ASSERT_EQ(maps[0].remarks.size(), 2u);
+    EXPECT_THAT(maps[0].remarks[0], HasSubstr("'V.Combined' is denoised already; 'V.Noisy Image' is"));
+    maps = recognise(document, {{"beauty", "V.Combined.RGB"}});
+    EXPECT_EQ(textOf(maps.at(0), "beauty"), "V.Combined.RGB");
+    EXPECT_EQ(maps[0].target().text(), "V.Combined.RGB");
+}
+
 TEST_F(RecogniseTest, OldPassesOfBlenderWithDenoisingDataOnly) {
     const auto maps = recognise(file({{.channels = joined({names("R G B A", "ViewLayer.Combined."),
                                                            names("R G B", "ViewLayer.Denoising Albedo."),
@@ -137,6 +170,37 @@ TEST_F(RecogniseTest, Mitsuba) {
     EXPECT_EQ(maps[0].encoding.depthKind, DepthKind::Distance);
 }
 
+/// Each triangle has another prim_index.
+TEST_F(RecogniseTest, MitsubasShapesAreObjectsAndItsTrianglesAreNot) {
+    const auto idOf = [&](const std::string& layers) {
+        return textOf(recognise(file({{.channels = names("R G B A " + layers),
+                                       .texts = {{"generatedBy", "Mitsuba version 3.5.2"}}}}),
+                                {})
+                          .at(0),
+                      "id");
+    };
+    EXPECT_EQ(idOf("prim_index.I"), "");
+    EXPECT_EQ(idOf("prim_index.I shape_index.I"), "shape_index.I");
+}
+
+/// Alpha is that of the beauty, by which all renderers multiply colours.
+TEST_F(RecogniseTest, AlphaIsInTheBeautysLayer) {
+    const auto alphaOf = [&](const TestPart& part) {
+        const LayerMap map = recognise(file({part}), {}).at(0);
+        return map.renderer + ": " + textOf(map, "alpha");
+    };
+    EXPECT_EQ(alphaOf({.channels = names("R G B A")}), "unknown: A");
+    EXPECT_EQ(alphaOf({.channels = names("rgba.R rgba.G rgba.B rgba.A A.X")}), "unknown: rgba.A");
+    EXPECT_EQ(alphaOf({.channels = names("R G B")}), "unknown: ");
+    EXPECT_EQ(alphaOf({.channels = names("RGBA.R RGBA.G RGBA.B RGBA.A"),
+                       .texts = {{"arnold/version", "Arnold 7.4.2.1"}}}),
+              "Arnold: RGBA.A");
+    EXPECT_EQ(alphaOf({.channels = names("Ci.r Ci.g Ci.b a mse.r mse.g mse.b")}), "RenderMan: a");
+    EXPECT_EQ(alphaOf({.channels = names("C.R C.G C.B C.A albedodiffuse.R")}), "Karma: C.A");
+    EXPECT_EQ(alphaOf({.channels = names("R G B A"), .texts = {{"generatedBy", "Mitsuba version 3.5.2"}}}),
+              "Mitsuba 3: A");
+}
+
 TEST_F(RecogniseTest, Pbrt) {
     for (const std::string geometry :
          {"P.X P.Y P.Z N.X N.Y N.Z Ns.X Ns.Y Ns.Z", "Px Py Pz Nx Ny Nz Nsx Nsy Nsz"}) {
@@ -175,6 +239,18 @@ TEST_F(RecogniseTest, ArnoldWithItsCamera) {
     EXPECT_EQ(camera->forward, vec3(0, 0, -1));
     EXPECT_NEAR(camera->right.x, 1.0f, 1e-5f);
     EXPECT_NEAR(camera->up.y, 0.5f, 1e-5f);
+}
+
+TEST_F(RecogniseTest, WidePixelsMakeTheCamerasViewLower) {
+    const Imath::M44f toCamera(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 5, 1);
+    const Imath::M44f toClip(1, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1, 1, 0, 0, -0.1f, 0);
+    const auto camera = cameraOfAttributes(
+        file({{.channels = names("R G B"),
+               .matrices = {{"worldToCamera", toCamera}, {"worldToScreen", toCamera * toClip}},
+               .pixelAspect = 2.0f}}));
+    ASSERT_TRUE(camera);
+    EXPECT_NEAR(camera->right.x, 1.0f, 1e-5f);
+    EXPECT_NEAR(camera->up.y, 0.25f, 1e-5f);
 }
 
 /// pbrt writes its matrices for column vectors, and no angle of view that could be used.
@@ -217,6 +293,7 @@ TEST_F(RecogniseTest, KarmaInParts) {
     ASSERT_EQ(maps.size(), 1u);
     EXPECT_EQ(maps[0].renderer, "Karma");
     EXPECT_EQ(textOf(maps[0], "beauty"), "C.RGB");
+    EXPECT_EQ(textOf(maps[0], "alpha"), "A");
     EXPECT_EQ(textOf(maps[0], "normal"), "N.XYZ");
     EXPECT_EQ(textOf(maps[0], "depth"), "depth.Y");
     EXPECT_EQ(maps[0].find("normal")->terms()[0].factors[0].channels[2].channel, "z");
@@ -253,6 +330,79 @@ TEST_F(RecogniseTest, AttachedLayersWin) {
     EXPECT_EQ(maps[0].find("albedo")->evaluate(document).at(0, 0, 0), 0.25f);
     better.width = 8;
     EXPECT_THROW(document.attach("normal", better, "wide.pfm"), InputError);
+}
+
+/// A picture of 4x2 pixels with these channels, all of one value.
+image::LayeredImage pictureWith(const std::vector<std::string>& channels, float value = 0.25f) {
+    image::LayeredImage result;
+    result.width = 4;
+    result.height = 2;
+    for (const std::string& name : channels)
+        result.channels.push_back({name, image::Storage::Float, std::vector<float>(8, value)});
+    return result;
+}
+
+TEST_F(RecogniseTest, AttachedRolesWinOverThoseOfEachRenderer) {
+    image::ExrDocument document = file({{.channels = cyclesChannels("V.")}});
+    document.attach("albedo", pictureWith(names("R G B")), "albedo.pfm");
+    document.attach("depth", pictureWith(names("R G B")), "grey.exr");
+    document.attach("motion", pictureWith(names("X Y Z W")), "motion.exr");
+    document.attach("alpha", pictureWith(names("R G B A")), "colours.exr");
+    document.attach("normal", pictureWith(names("N.X N.Y N.Z normal.X normal.Y normal.Z", "V.")), "all.exr");
+    document.attach("diffuse", pictureWith(names("V.Combined.R V.Combined.G V.Combined.B")), "diffuse.exr");
+    document.attach("n", pictureWith(names("X Y Z")), "n.exr");
+    const auto maps = recognise(document, {{"cameraNormal", "n.XYZ"}});
+    ASSERT_EQ(maps.size(), 1u) << "an attached beauty is no picture";
+    EXPECT_EQ(textOf(maps[0], "beauty"), "V.Combined.RGB");
+    EXPECT_EQ(textOf(maps[0], "albedo"), "albedo.RGB");
+    EXPECT_EQ(textOf(maps[0], "depth"), "depth.R");
+    EXPECT_EQ(maps[0].encoding.depthKind, DepthKind::Planar);
+    EXPECT_EQ(textOf(maps[0], "motion"), "motion.XY");
+    EXPECT_EQ(textOf(maps[0], "alpha"), "alpha.A");
+    EXPECT_EQ(textOf(maps[0], "normal"), "normal.V.normal.XYZ") << "it has the role's name";
+    EXPECT_EQ(textOf(maps[0], "diffuse"), "diffuse.V.Combined.RGB") << "the only one";
+    EXPECT_EQ(textOf(recognise(document, {{"cameraNormal", "n.XYZ"}, {"specular", "albedo.RGB"}}).at(0),
+                     "specular"),
+              "albedo.RGB");
+}
+
+/// The encoding of a layer that is not used does not apply.
+TEST_F(RecogniseTest, AnAttachedNormalIsOfTheRenderersWorld) {
+    image::ExrDocument document =
+        file({{.channels = joined({names("R G B", "V.Combined."), names("X Y Z", "V.Denoising Normal.")})}});
+    document.attach("normal", pictureWith(names("X Y Z")), "n.exr");
+    const auto maps = recognise(document, {});
+    EXPECT_EQ(textOf(maps.at(0), "normal"), "normal.XYZ");
+    EXPECT_EQ(maps[0].encoding.normalSpace, NormalSpace::World);
+}
+
+TEST_F(RecogniseTest, AttachedFilesThatAreNotUsedAreRefused) {
+    const auto messageOf = [&](const std::string& name, const std::string& channels,
+                               const Assignments& assignments = {}) -> std::string {
+        image::ExrDocument document = file({{.channels = cyclesChannels("V.")}});
+        document.attach(name, pictureWith(names(channels)), "a.exr");
+        try {
+            recognise(document, assignments);
+        } catch (const UsageError& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    EXPECT_THAT(messageOf("colour", "R G B"),
+                HasSubstr("--file colour: it is not used: 'colour' is no layer"));
+    EXPECT_EQ(messageOf("colour", "R G B", {{"albedo", "colour.RGB"}}), "none");
+    EXPECT_THAT(messageOf("albedo", "Y"), HasSubstr("it has no layer with three components, which 'albedo'"));
+    EXPECT_THAT(messageOf("albedo", "a.R a.G a.B b.R b.G b.B"),
+                HasSubstr("several of its layers fit (albedo.a.RGB, albedo.b.RGB); --map "
+                          "albedo=albedo.a.RGB chooses one"));
+    EXPECT_EQ(messageOf("albedo", "a.R a.G a.B b.R b.G b.B", {{"albedo", "albedo.b.RGB"}}), "none");
+    EXPECT_THAT(messageOf("normal", "R G B A N.X N.Y N.Z"),
+                HasSubstr("several of its layers fit (normal.XYZ, normal.N.XYZ)"))
+        << "the unnamed layer may be a beauty";
+    EXPECT_EQ(messageOf("depth", "R G B A depth.Z"), "none");
+    EXPECT_THAT(messageOf("albedo", "R G B", {{"albedo", "V.DiffCol.RGB"}}),
+                HasSubstr("--map albedo names another layer"));
+    EXPECT_THAT(messageOf("beauty", "R G B"), HasSubstr("the beauty is the input itself"));
 }
 
 TEST_F(RecogniseTest, LightGroups) {

@@ -35,11 +35,15 @@ struct TestPart {
     std::vector<std::pair<std::string, Imath::M44f>> matrices;
     std::string view;                ///< the part's; none if empty
     std::vector<std::string> views;  ///< the attribute "multiView"; none if empty
+    float pixelAspect = 1.0f;
+    int overscan = 0;  ///< how many columns of the data are left of the display window
 };
 
 inline Imf::Header headerOf(const TestPart& part, uint32_t width, uint32_t height) {
     Imf::Header header(static_cast<int>(width), static_cast<int>(height));
     header.compression() = Imf::ZIP_COMPRESSION;
+    header.pixelAspectRatio() = part.pixelAspect;
+    header.displayWindow().min.x += part.overscan;
     for (const std::string& channel : part.channels)
         header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
     for (const auto& [name, text] : part.texts) header.insert(name, Imf::StringAttribute(text));

@@ -17,6 +17,15 @@ constexpr float returnTolerance = 1.0f, returnShare = 0.05f;
 constexpr float sameMotion = 0.75f;
 /// Pixels that differ by more show different surfaces: as much as a fifth of white from black in each colour.
 constexpr int otherSurface = 64;
+/// Frames that differ by less, in the mean of the pixels, are still.
+constexpr double stillDifference = 0.05;
+/// Something moves if motion explains this share of the difference (large motion, perhaps of a small object),
+/// or if half of the pixels move by more than the error of the search (slow motion, which hardly differs).
+constexpr double explainedShare = 0.3;
+constexpr float slowMotion = 0.25f;
+constexpr const char* zeroMotionProblem =
+    "the motion vectors are all 0 although the picture changes, so motion is searched (Blender writes no "
+    "vectors with motion blur)";
 
 /// The four blocks around a pixel, and where it lies between them.
 struct Around {
@@ -38,6 +47,20 @@ struct Around {
                 field.at(column + 1, row + 1)};
     }
 };
+
+int rounded(float value) {
+    return static_cast<int>(std::lround(value));
+}
+
+/// To the most similar of 3x3 pixels: at edges, pixels are noisy means of several surfaces.
+int nearestDifference(const GuideLevel& here, const GuideLevel& there, int x, int y, const vec2& motion) {
+    const int u = x + rounded(motion.x), v = y + rounded(motion.y);
+    int smallest = std::numeric_limits<int>::max();
+    for (int j = v - 1; j <= v + 1; ++j)
+        for (int i = u - 1; i <= u + 1; ++i)
+            smallest = std::min(smallest, differenceOf(here.at(x, y), there.clamped(i, j)));
+    return smallest;
+}
 
 /// The motion of single pixels, from that of blocks.
 class PixelMotion {
@@ -68,17 +91,9 @@ class PixelMotion {
         return best;
     }
 
-    /// To the most similar of 3x3 pixels: at edges, pixels are noisy means of several surfaces.
     int differenceAt(int x, int y, const vec2& motion) const {
-        const int u = x + rounded(motion.x), v = y + rounded(motion.y);
-        int smallest = std::numeric_limits<int>::max();
-        for (int j = v - 1; j <= v + 1; ++j)
-            for (int i = u - 1; i <= u + 1; ++i)
-                smallest = std::min(smallest, differenceOf(here_.at(x, y), there_.clamped(i, j)));
-        return smallest;
+        return nearestDifference(here_, there_, x, y, motion);
     }
-
-    static int rounded(float value) { return static_cast<int>(std::lround(value)); }
 
   private:
     /// The difference of 3x3 pixels.
@@ -100,7 +115,7 @@ class PixelMotion {
 std::optional<vec2> certainMotion(const PixelMotion& there, const PixelMotion& back, const GuideLevel& level,
                                   int x, int y) {
     const vec2 motion = there.at(x, y);
-    const int u = x + PixelMotion::rounded(motion.x), v = y + PixelMotion::rounded(motion.y);
+    const int u = x + rounded(motion.x), v = y + rounded(motion.y);
     if (u < 0 || v < 0 || u >= level.width || v >= level.height) return std::nullopt;
     if (there.differenceAt(x, y, motion) > otherSurface) return std::nullopt;
     const float limit = returnTolerance + returnShare * glm::length(motion);
@@ -112,18 +127,84 @@ bool sameSize(const std::vector<GuideLevel>& a, const std::vector<GuideLevel>& b
     return !a.empty() && !b.empty() && a[0].width == b[0].width && a[0].height == b[0].height;
 }
 
+/// Calls use(x, y) for some 50,000 pixels; the distance is odd, so that columns do not repeat.
+template <typename Use>
+void forSomePixels(const GuideLevel& level, const Use& use) {
+    const size_t stride = (level.texels.size() / 50000) | 1u, width = static_cast<size_t>(level.width);
+    for (size_t p = 0; p < level.texels.size(); p += stride)
+        use(static_cast<int>(p % width), static_cast<int>(p / width));
+}
+
+bool isStill(const GuideLevel& now, const GuideLevel& before) {
+    double sum = 0.0, count = 0.0;
+    forSomePixels(now, [&](int x, int y) {
+        sum += differenceOf(now.at(x, y), before.at(x, y));
+        count += 1.0;
+    });
+    return sum < stillDifference * count;
+}
+
+/// True if this motion rather than noise makes the frames differ. Uncertain motion explains nothing.
+bool explains(const image::Image& motion, const GuideLevel& now, const GuideLevel& before) {
+    double still = 0.0, left = 0.0, moving = 0.0, count = 0.0;
+    forSomePixels(now, [&](int x, int y) {
+        const auto column = static_cast<uint32_t>(x), row = static_cast<uint32_t>(y);
+        const vec2 moved(motion.at(column, row, 0), motion.at(column, row, 1));
+        const bool certain = moved.x < MotionSearch::uncertain;
+        const int unmoved = nearestDifference(now, before, x, y, vec2(0.0f));
+        still += unmoved;
+        left += certain ? nearestDifference(now, before, x, y, moved) : unmoved;
+        moving += certain && glm::length(moved) > slowMotion ? 1.0 : 0.0;
+        count += 1.0;
+    });
+    return still - left > explainedShare * still || moving > 0.5 * count;
+}
+
+/// From pixels to the file's units.
+void encode(image::Image& motion, const Encoding& encoding) {
+    vec2 scale = 1.0f / encoding.motionScale;
+    if (encoding.motionUnit == MotionUnit::Picture) scale /= vec2(motion.width, motion.height);
+    forEachPixel(motion.pixels.size(), [&](size_t i) {
+        float& value = motion.pixels[i];
+        value = value < MotionSearch::uncertain ? value * scale[static_cast<int>(i % 2)] : INFINITY;
+    });
+}
+
 }  // namespace
 
 std::optional<image::Image> MotionSearch::next(const ShotLayers& layers, bool continues) {
     const std::vector<GuideLevel> before = std::move(last_);
     last_ = guidePyramid(layers);
     if (!continues || !sameSize(before, last_)) return std::nullopt;
+    return search(before);
+}
+
+void MotionSearch::replaceZero(ShotLayers& layers, const Encoding& encoding, bool continues) {
+    const std::vector<GuideLevel> before = std::move(last_);
+    last_ = guidePyramid(layers);
+    const bool comparable = continues && sameSize(before, last_);
+    if (comparable && (moves_ || !isStill(last_.front(), before.front()))) {
+        image::Image motion = search(before);
+        moves_ = moves_ || explains(motion, last_.front(), before.front());
+        if (moves_) {
+            encode(motion, encoding);
+            layers.images["motion"] = std::move(motion);
+        }
+    }
+    if (!moves_) return restoreZeroMotion(layers);
+    layers.zeroMotion = false;
+    layers.motionSearched = true;
+    layers.problems.emplace_back(zeroMotionProblem);
+}
+
+image::Image MotionSearch::search(const std::vector<GuideLevel>& before) const {
     const MotionField toBefore = matchBlocks(last_, before), toNow = matchBlocks(before, last_);
     const PixelMotion there(last_.front(), before.front(), toBefore),
         back(before.front(), last_.front(), toNow);
-    image::Image result(layers.width, layers.height, 2);
+    image::Image result(static_cast<uint32_t>(last_.front().width),
+                        static_cast<uint32_t>(last_.front().height), 2);
     forEachPixel(result.pixels.size() / 2, [&](size_t p) {
-        const auto x = static_cast<int>(p % layers.width), y = static_cast<int>(p / layers.width);
+        const auto x = static_cast<int>(p % result.width), y = static_cast<int>(p / result.width);
         const vec2 moved = certainMotion(there, back, last_.front(), x, y).value_or(vec2(uncertain));
         result.pixels[2 * p] = moved.x;
         result.pixels[2 * p + 1] = moved.y;

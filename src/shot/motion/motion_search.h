@@ -20,10 +20,18 @@ class MotionSearch {
     /// Frames that are equal have no motion.
     std::optional<image::Image> next(const ShotLayers& layers, bool continues);
 
+    /// For layers with ShotLayers::zeroMotion, which is right if nothing moves: puts the zeros back, until
+    /// two frames differ in a way that found motion explains; from then on, what next() finds, in the file's
+    /// encoding, and ShotLayers::problems tells of it.
+    void replaceZero(ShotLayers& layers, const Encoding& encoding, bool continues);
+
     static constexpr float uncertain = 1e10f;  ///< above Encoding::noMotion
 
   private:
+    image::Image search(const std::vector<GuideLevel>& before) const;
+
     std::vector<GuideLevel> last_;
+    bool moves_ = false;  ///< replaceZero() has seen something move
 };
 
 }  // namespace limpid::shot

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <functional>
 
+#include "shot/frame/pixel_layers.h"
+
 namespace limpid::shot {
 namespace {
 
@@ -46,6 +48,12 @@ float pattern(float x, float y) {
     const float u = smooth(x / 5.0f - i), v = smooth(y / 5.0f - j);
     return 0.2f + 0.6f * glm::mix(glm::mix(value(i, j), value(i + 1, j), u),
                                   glm::mix(value(i, j + 1), value(i + 1, j + 1), u), v);
+}
+
+ShotLayers zeroMotionOf(const Look& look) {
+    ShotLayers layers = layersOf(look);
+    layers.zeroMotion = true;
+    return layers;
 }
 
 vec2 texture(float x, float y) {
@@ -169,6 +177,53 @@ TEST(MotionSearchTest, NoiseInAStillFrameIsNoMotion) {
         return vec2(pattern(x, y) + 0.2f * noise, 0.0f);
     };
     EXPECT_GT(shareNear(motionBetween(noisy, noisy), vec2(0), 0.26f), 0.9);
+    MotionSearch search;
+    for (int frame = 0; frame < 3; ++frame) {
+        ShotLayers layers = zeroMotionOf(noisy);
+        search.replaceZero(layers, {}, frame > 0);
+        EXPECT_FALSE(layers.motionSearched || layers.zeroMotion);
+        for (const float value : layers.find("motion")->pixels) ASSERT_EQ(value, 0.0f);
+    }
+}
+
+TEST(MotionSearchTest, VectorsThatAreAllZeroAreReplacedIfThePictureChanges) {
+    Encoding encoding;
+    encoding.motionUnit = MotionUnit::Picture;
+    encoding.motionScale = {-0.5f, 0.5f};
+    for (const vec2 shift : {vec2(3, -2), vec2(0.5f, 0)}) {
+        MotionSearch search;
+        ShotLayers first = zeroMotionOf(texture);
+        search.replaceZero(first, encoding, false);
+        EXPECT_EQ(first.find("motion")->at(20, 20, 0), 0.0f) << "nothing is known yet";
+        ShotLayers layers = zeroMotionOf([&](float x, float y) { return texture(x + shift.x, y + shift.y); });
+        search.replaceZero(layers, encoding, true);
+        ASSERT_TRUE(layers.motionSearched);
+        EXPECT_EQ(layers.problems.size(), 1u);
+        const auto moved = motionAt(*layers.find("motion"), 48 * wide + 80, encoding);
+        ASSERT_TRUE(moved);
+        EXPECT_LT(glm::distance(*moved, shift), 0.25f) << shift.x;
+        ShotLayers afterCut = zeroMotionOf(texture);
+        search.replaceZero(afterCut, encoding, false);
+        EXPECT_FALSE(afterCut.find("motion")) << "the vectors are not believed any more";
+    }
+}
+
+TEST(MotionSearchTest, FramesGetMotionInPlaceOfZeros) {
+    FrameConverter converter{LayerMap()};
+    const auto convert = [&](float shift, bool continues) {
+        ShotLayers layers = zeroMotionOf([&](float x, float y) { return texture(x + shift, y); });
+        layers.images["beauty"] = image::Image(wide, tall, 3, 1.0f);
+        return converter.convertUsingUp(layers, std::nullopt, continues, false);
+    };
+    convert(0.0f, false);
+    EXPECT_FALSE(converter.report().motionSearched);
+    const denoise::HostFrame frame = convert(4.0f, true);
+    EXPECT_TRUE(converter.report().motionSearched);
+    EXPECT_EQ(converter.report().problems.size(), 1u);
+    EXPECT_EQ(converter.report().camera, CameraSource::Supposed);
+    const float* const moved = &frame.motion[4 * (48 * wide + 80)];
+    EXPECT_NEAR(moved[0], 4.0f, 0.25f);
+    EXPECT_EQ(moved[3], 1.0f);
 }
 
 }  // namespace

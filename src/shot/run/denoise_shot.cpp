@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <set>
+#include <string>
 
 #include "base/error.h"
 #include "renderer/layers/picture_name.h"
@@ -18,9 +20,9 @@ namespace limpid::shot {
 namespace {
 
 void warnOf(const LoadedFrame& frame, const ShotJob& job) {
+    for (const std::string& text : frame.warnings) warn(job, text);
     for (const LayerInfo* layer : frame.lacking)
         warn(job, fmt::format("the layer '{}' is missing: {}", layer->name, layer->without));
-    for (const std::string& text : job.warnings) warn(job, text);
     if (const std::string variances = explainVariances(frame); !variances.empty()) warn(job, variances);
     const bool needsMotion = job.load.sequence && !job.load.network;
     for (const LayerMap& map : frame.maps)
@@ -39,35 +41,61 @@ class ShotRun {
           denoiser_(device, job.options, Direction::Forwards),
           cuts_(job),
           writer_(job),
-          first_(job.resume ? firstIncomplete(job) : job.firstWritten) {}
+          first_(job.firstWritten) {}
 
     ShotSummary run() {
         const auto start = std::chrono::steady_clock::now();
-        summary_.kept = static_cast<int>(first_ - job_.firstWritten);
-        const size_t runUp = std::min(first_, runUpFrames);
-        for (size_t i = first_ - (first_ < job_.endWritten ? runUp : 0); i < job_.endWritten; ++i) {
-            const bool blockBegins = i >= first_ && (i - first_) % blockFrames == 0;
-            if (job_.bidirectional && blockBegins) goBackwards(i);
-            const bool blockEnds = i + 1 >= first_ && (i + 1 - first_) % blockFrames == 0;
-            const bool readsOn = i + 1 < job_.endWritten && !(job_.bidirectional && blockEnds);
-            std::optional<LoadedFrame> frame = reader_.read(i, readsOn ? std::optional(i + 1) : std::nullopt);
-            if (frame) goForwards(std::move(*frame), i >= first_);
-            if (i >= first_ && job_.progress && !job_.progress(i + 1 - first_, job_.endWritten - first_)) {
-                summary_.stopped = i + 1 < job_.endWritten;
-                break;
-            }
-        }
+        for (const std::string& text : job_.warnings) warn(job_, text);
+        if (!job_.resume || keepComplete()) denoiseFrames();
         writer_.finish();
         summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         summary_.skipped.assign(reader_.skipped().begin(), reader_.skipped().end());
-        if (summary_.frames == 0 && summary_.kept == 0 && first_ < job_.endWritten)
-            throw InputError(job_.input.text(), "no frame could be read");
+        checkSomeFrameWasRead(job_, summary_);
         return summary_;
     }
 
   private:
-    /// Denoises the block from its run-up down to its first frame.
-    void goBackwards(size_t first) {
+    /// Asked often, so that run-ups and backward runs can be stopped, too, and others see that this process
+    /// lives.
+    bool goesOn(size_t done) {
+        summary_.stopped = job_.progress && !job_.progress(done, job_.endWritten - first_);
+        return !summary_.stopped;
+    }
+
+    /// Moves `first_` to the first frame that is not complete. Returns false if the run is stopped.
+    bool keepComplete() {
+        const std::optional<size_t> found = firstIncomplete(job_, reader_, [this] { return goesOn(0); });
+        if (!found) return false;
+        const auto at = [this](size_t index) { return job_.frames.begin() + static_cast<ptrdiff_t>(index); };
+        summary_.kept = static_cast<int>(std::count_if(
+            at(first_), at(*found), [this](int frame) { return !reader_.skipped().contains(frame); }));
+        first_ = *found;
+        return true;
+    }
+
+    /// How many frames before the first one are denoised for its history. Networks have none.
+    size_t runUp() const {
+        const bool isAlone = job_.options.method->network && !job_.options.keepsAntialiasing;
+        return isAlone || first_ >= job_.endWritten ? 0 : std::min(first_, runUpFrames);
+    }
+
+    void denoiseFrames() {
+        for (size_t i = first_ - runUp(); i < job_.endWritten; ++i) {
+            const bool isWritten = i >= first_;
+            const bool blockBegins = isWritten && (i - first_) % blockFrames == 0;
+            if (job_.bidirectional && blockBegins && !goBackwards(i)) return;
+            const bool blockEnds = i + 1 >= first_ && (i + 1 - first_) % blockFrames == 0;
+            const bool readsOn = i + 1 < job_.endWritten && !(job_.bidirectional && blockEnds);
+            std::optional<LoadedFrame> frame = reader_.read(i, readsOn ? std::optional(i + 1) : std::nullopt);
+            if (frame) goForwards(std::move(*frame), isWritten);
+            if (goesOn(isWritten ? i + 1 - first_ : 0)) continue;
+            summary_.stopped = i + 1 < job_.endWritten;
+            return;
+        }
+    }
+
+    /// Denoises the block from its run-up down to its first frame. Returns false if the run is stopped.
+    bool goBackwards(size_t first) {
         const size_t end = std::min(first + blockFrames, job_.endWritten);
         const size_t from = std::min(end + runUpFrames, job_.frames.size());
         ShotDenoiser denoiser(device_, job_.options, Direction::Backwards);
@@ -75,6 +103,7 @@ class ShotRun {
         backwards_.clear();
         std::optional<int> later;
         for (size_t i = from; i-- > first;) {
+            if (!goesOn(first - first_)) return false;
             std::optional<LoadedFrame> frame =
                 reader_.read(i, i > first ? std::optional(i - 1) : std::nullopt);
             if (!frame) continue;
@@ -86,6 +115,7 @@ class ShotRun {
             std::vector<PackedPicture>& packed = backwards_[frame->number];
             for (const CleanPicture& picture : pictures) packed.emplace_back(picture);
         }
+        return true;
     }
 
     /// `isWritten`: else the frame only makes histories.
@@ -97,7 +127,7 @@ class ShotRun {
             for (const LayerMap& map : frame.maps)
                 if (exr) checkReplaceable(frame.file, map);
         }
-        if (cut && !first) summary_.cuts.push_back(frame.number);
+        if (cut && !first && isWritten) summary_.cuts.push_back(frame.number);
         // Motion leads to the frame before, so after a gap it leads nowhere.
         const bool continues = !first && !cut && frame.number == *last_ + 1;
         last_ = frame.number;
@@ -114,13 +144,22 @@ class ShotRun {
         writer_.write(frame.number, std::move(result));
     }
 
+    void warnOfPicture(const LoadedFrame& frame, const CleanPicture& picture) {
+        for (const std::string& problem : picture.report.problems)
+            if (said_.insert(problem).second) warn(job_, problem);
+        const uint64_t notFinite = std::max(picture.disocclusion.rejected, picture.report.notFinite);
+        const char* const fate =
+            frame.own ? "they were left out" : "infinite sky and lamps become 65504, others were left out";
+        if (notFinite > 0)
+            warn(job_, fmt::format("{}: {} pixels are NaN or infinite: {}", frame.file.name().string(),
+                                   notFinite, fate));
+    }
+
     /// Merges both directions.
-    void finishPictures(const LoadedFrame& frame, std::vector<CleanPicture>& pictures) const {
+    void finishPictures(const LoadedFrame& frame, std::vector<CleanPicture>& pictures) {
         const auto later = backwards_.find(frame.number);
         for (size_t i = 0; i < pictures.size(); ++i) {
-            if (const uint64_t rejected = pictures[i].disocclusion.rejected; rejected > 0)
-                warn(job_, fmt::format("{}: {} pixels are NaN or infinite and were left out",
-                                       frame.file.name().string(), rejected));
+            warnOfPicture(frame, pictures[i]);
             if (later != backwards_.end() && i < later->second.size())
                 merge(pictures[i], later->second[i].unpacked());
         }
@@ -136,12 +175,19 @@ class ShotRun {
     ShotSummary summary_;
     std::map<int, std::vector<PackedPicture>> backwards_;  ///< of the block, by frame and picture
     std::optional<int> last_;
+    std::set<std::string> said_;  ///< warnings that are not repeated for each frame
 };
 
 }  // namespace
 
 ShotSummary denoiseShot(const ShotJob& job, gpu::Device& device) {
     return ShotRun(job, device).run();
+}
+
+void checkSomeFrameWasRead(const ShotJob& job, const ShotSummary& summary) {
+    const bool isWhole = job.firstWritten == job.firstAsked && job.endWritten == job.endAsked;
+    if (isWhole && !summary.stopped && summary.frames == 0 && summary.kept == 0)
+        throw InputError(job.input.text(), "no frame could be read");
 }
 
 }  // namespace limpid::shot

@@ -19,6 +19,11 @@ struct ShotSummary {
 /// Throws InputError if a frame cannot be read and is not to be skipped; frames before it are complete.
 /// Bidirectional shots are denoised in blocks, which bounds the memory: each block first backwards, beginning
 /// some frames behind its end, then forwards.
+/// If all frames are skipped, throws InputError, unless the job writes only a part of what is asked for:
+/// other parts may have readable ones.
 ShotSummary denoiseShot(const ShotJob& job, gpu::Device& device);
+
+/// For who runs a job in parts: throws that InputError. `summary` is of the whole job.
+void checkSomeFrameWasRead(const ShotJob& job, const ShotSummary& summary);
 
 }  // namespace limpid::shot

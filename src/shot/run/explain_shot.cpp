@@ -31,7 +31,7 @@ FrameReport viewOf(FrameConverter& converter, const LoadedFrame& frame, size_t p
     const auto camera = job.options.cameras
                             ? job.options.cameras->at(frame.number, frame.maps[picture].encoding.worldUp)
                             : std::nullopt;
-    if (camera) given = camera->params(layers.width, layers.height);
+    if (camera) given = camera->params(layers.width, layers.height, frame.file.pixelAspect());
     converter.convert(layers, given, continues);
     return converter.report();
 }
@@ -39,13 +39,14 @@ FrameReport viewOf(FrameConverter& converter, const LoadedFrame& frame, size_t p
 }  // namespace
 
 std::string explainShot(const ShotJob& job) {
-    const LoadedFrame first = load(job, job.frames.front());
+    const size_t at = job.firstAsked, next = at + 1;
+    const LoadedFrame first = load(job, job.frames[at]);
     std::optional<LoadedFrame> second;
-    if (job.frames.size() > 1 && job.frames[1] == job.frames[0] + 1) {
+    if (next < job.frames.size() && job.frames[next] == job.frames[at] + 1) {
         try {
-            second = load(job, job.frames[1]);
+            second = load(job, job.frames[next]);
         } catch (const InputError&) {
-            if (!job.skipUnreadable) throw;
+            if (!job.skipUnreadable && next < job.endAsked) throw;
         }
     }
     std::string text = explainLayers(first);
@@ -56,12 +57,17 @@ std::string explainShot(const ShotJob& job) {
         FrameConverter converter(first.maps[i]);
         FrameReport report = viewOf(converter, first, i, job, false);
         const bool pair = second && i < second->maps.size();
-        const bool searched = pair && first.maps[i].searchesMotion && second->maps[i].searchesMotion;
+        bool searched = pair && first.maps[i].searchesMotion && second->maps[i].searchesMotion;
         if (searched) {
             MotionSearch search;
             search.next(first.layers[i], false);
             if (auto motion = search.next(second->layers[i], true))
                 second->layers[i].images["motion"] = std::move(*motion);
+        } else if (pair && second->layers[i].zeroMotion) {
+            MotionSearch search;
+            search.next(first.layers[i], false);
+            search.replaceZero(second->layers[i], first.maps[i].encoding, true);
+            searched = second->layers[i].motionSearched;
         }
         if (pair) report = viewOf(converter, *second, i, job, true);
         text += explainView(report);

@@ -14,10 +14,12 @@ std::optional<LoadedFrame> FrameReader::read(size_t index, std::optional<size_t>
         frame = current.get();
         unpack(*frame, job_.load);
     } catch (const InputError& error) {
-        if (!job_.skipUnreadable || job_.frames.size() == 1) throw;
+        const bool asked = index >= job_.firstAsked && index < job_.endAsked;
+        if (asked && (!job_.skipUnreadable || job_.endAsked - job_.firstAsked == 1)) throw;
         frame.reset();
-        if (skipped_.insert(job_.frames[index]).second)
-            warn(job_, fmt::format("{}; the frame is skipped", error.what()));
+        if ((asked ? skipped_ : leftOut_).insert(job_.frames[index]).second)
+            warn(job_, fmt::format("{}; {}", error.what(),
+                                   asked ? "the frame is skipped" : "histories do without the frame"));
     }
     if (next) start(*next);
     return frame;

@@ -108,10 +108,13 @@ std::vector<float> surfacesOf(const LoadedFrame& frame) {
     return result;
 }
 
-size_t firstIncomplete(const ShotJob& job) {
+std::optional<size_t> firstIncomplete(const ShotJob& job, FrameReader& reader,
+                                      const std::function<bool()>& goesOn) {
     for (size_t i = job.firstWritten; i < job.endWritten; ++i) {
+        if (!goesOn()) return std::nullopt;
         const OutputState state = stateOf(job.frames[i], job);
         if (state == OutputState::Complete) continue;
+        if (job.skipUnreadable && !reader.read(i, std::nullopt)) continue;
         // Where frames are denoised backwards, too, those before a frame that has changed show its old light.
         const size_t reach = job.bidirectional && state == OutputState::Other ? blockFrames + runUpFrames : 0;
         return std::max(i, job.firstWritten + reach) - reach;

@@ -1,9 +1,12 @@
 // Writes the clean frames of a shot.
 #pragma once
 
+#include <functional>
 #include <future>
+#include <optional>
 #include <vector>
 
+#include "shot/run/frame_reader.h"
 #include "shot/run/shot_job.h"
 
 namespace limpid::shot {
@@ -37,7 +40,9 @@ class FrameWriter {
 std::vector<float> surfacesOf(const LoadedFrame& frame);
 
 /// The index of the first frame whose output is not complete: EXR files say of which input and settings they
-/// are.
-size_t firstIncomplete(const ShotJob& job);
+/// are. Frames that the reader skips are passed over, as there is nothing to write. Asks `goesOn` before each
+/// frame; nothing if that is false.
+std::optional<size_t> firstIncomplete(const ShotJob& job, FrameReader& reader,
+                                      const std::function<bool()>& goesOn);
 
 }  // namespace limpid::shot

@@ -10,7 +10,8 @@ namespace limpid::shot {
 
 class PackedPicture {
   public:
-    /// Keeps colours and alpha in half precision, and histories up to 255 frames.
+    /// Keeps colours and alpha in half precision, and histories up to 255 frames. A pixel that is too bright
+    /// for half precision gets no history, so that merge() takes the other direction's.
     explicit PackedPicture(const CleanPicture& picture);
     CleanPicture unpacked() const;
 

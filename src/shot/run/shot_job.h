@@ -17,7 +17,10 @@ enum class Cuts { Found, Given };
 struct ShotJob {
     FramePattern input, output;
     std::vector<int> frames;  ///< ascending; -1 for a single file
-    /// Indices of the frames that are written; those around them only make histories.
+    /// Indices of the frames that the user asks for. Those around them only make histories, so the run goes
+    /// on if they cannot be read.
+    size_t firstAsked = 0, endAsked = 0;
+    /// Indices of the frames that are written: those asked for, or a part of them.
     size_t firstWritten = 0, endWritten = 0;
     /// What the result depends on besides the input, for the attribute "limpid.input" of EXR files.
     std::string settingsText;
@@ -35,8 +38,8 @@ struct ShotJob {
     std::optional<float> exposure;  ///< of PNG files, stops; none: measured
 
     MessageCallback messages;
-    /// Called after each frame that is denoised; false stops the run, and frames so far are written. `done`
-    /// of `total` frames are finished.
+    /// Called for each frame that is denoised; false stops the run, and frames so far are written. `done` of
+    /// `total` frames are finished: in run-ups and backward runs it stays the same.
     std::function<bool(size_t done, size_t total)> progress;
     /// Called after each frame that is written, with the graph of its first picture.
     std::function<void(int frame, gpu::FrameGraph& graph)> afterFrame;

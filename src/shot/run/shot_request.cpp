@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <stdexcept>
 #include <system_error>
 
@@ -63,29 +64,79 @@ std::pair<int, int> parseRange(const std::string& text) {
     return {first, last};
 }
 
-/// Returns the frames to denoise, or -1 for a single file.
-std::vector<int> framesOf(const ShotRequest& r, const FramePattern& input) {
-    if (!input.numbered()) {
-        if (!r.frames.empty()) throw UsageError("--frames: the input's name holds no number");
-        return {-1};
-    }
-    const bool skips = r.onError == "skip";
-    std::vector<int> frames = skips ? input.existingFrames() : std::vector<int>{};
-    if (r.frames.empty()) return frames.empty() ? input.wholeSequence() : frames;
-    if (frames.empty()) frames = input.existingFrames();
-    const auto [first, last] = parseRange(r.frames);
-    std::erase_if(frames, [&, a = first, b = last](int frame) { return frame < a || frame > b; });
-    for (size_t i = 0; !skips && i + 1 < frames.size(); ++i)
-        if (frames[i + 1] != frames[i] + 1)
-            throw InputError(input.text(), fmt::format("frame {} is missing", frames[i] + 1));
-    if (frames.empty()) throw InputError(input.text(), fmt::format("there are no frames {}", r.frames));
-    if (!skips && (frames.front() != first || frames.back() != last))
-        throw InputError(input.text(),
-                         fmt::format("frame {} is missing", frames.front() != first ? first : last));
-    return frames;
+/// Forgets the frames before index `from`, and from index `to` on. Those asked for must be between.
+void keepFrames(size_t from, size_t to, ShotJob& job) {
+    job.frames = {job.frames.begin() + static_cast<ptrdiff_t>(from),
+                  job.frames.begin() + static_cast<ptrdiff_t>(to)};
+    for (size_t* const index : {&job.firstAsked, &job.endAsked, &job.firstWritten, &job.endWritten})
+        *index -= std::min(*index, from);
 }
 
-/// Chooses the job's frames that are written: all, or those of "2/4", the second of four parts.
+/// The frames that the user asks for.
+std::span<const int> askedFrames(const ShotJob& job) {
+    return std::span(job.frames).subspan(job.firstAsked, job.endAsked - job.firstAsked);
+}
+
+/// Names the frames from `first` to `last` that are not among `frames`, which are ascending: "frames 3, 7-9
+/// are missing". "" if there are none.
+std::string describeMissing(std::span<const int> frames, int first, int last) {
+    constexpr size_t shown = 20;
+    std::string text;
+    size_t gaps = 0;
+    int64_t missing = 0, next = first;
+    const auto addGap = [&](int64_t end) {
+        if (end <= next) return;
+        missing += end - next;
+        if (++gaps > shown) return;
+        text += fmt::format("{}{}", gaps > 1 ? ", " : "", next);
+        if (end > next + 1) text += fmt::format("-{}", end - 1);
+    };
+    for (const int frame : frames) {
+        addGap(frame);
+        next = int64_t{frame} + 1;
+    }
+    addGap(int64_t{last} + 1);
+    if (gaps == 0) return {};
+    if (gaps > shown) text += fmt::format(" and others ({} in all)", missing);
+    return missing == 1 ? fmt::format("frame {} is missing", text)
+                        : fmt::format("frames {} are missing", text);
+}
+
+/// Keeps only those frames around the ones that are asked for that can make histories for them: those without
+/// a gap between, and not too many. They are kept in both directions, for --bidirectional.
+void limitRunUps(ShotJob& job) {
+    std::vector<int>& frames = job.frames;
+    size_t from = job.firstAsked, to = job.endAsked;
+    while (from > 0 && job.firstAsked - from < runUpFrames && frames[from - 1] + 1 == frames[from]) --from;
+    while (to < frames.size() && to - job.endAsked < runUpFrames && frames[to - 1] + 1 == frames[to]) ++to;
+    keepFrames(from, to, job);
+}
+
+/// Finds the frames that exist, and which of them are asked for. A single file is frame -1.
+void findFrames(const ShotRequest& r, ShotJob& job) {
+    const FramePattern& input = job.input;
+    if (!input.numbered()) {
+        if (!r.frames.empty()) throw UsageError("--frames: the input's name holds no number");
+        job.frames = {-1};
+        job.endAsked = 1;
+        return;
+    }
+    const bool all = r.frames.empty();
+    std::vector<int>& frames = job.frames;
+    if (job.skipUnreadable || !all) frames = input.existingFrames();
+    if (all && frames.empty()) frames = input.wholeSequence();
+    const auto [first, last] = all ? std::pair(frames.front(), frames.back()) : parseRange(r.frames);
+    const auto begin = std::ranges::lower_bound(frames, first), end = std::ranges::upper_bound(frames, last);
+    if (begin == end) throw InputError(input.text(), fmt::format("there are no frames {}", r.frames));
+    const std::string missing = describeMissing({begin, end}, first, last);
+    if (!missing.empty() && !job.skipUnreadable) throw InputError(input.text(), missing);
+    if (!missing.empty()) job.warnings.push_back(fmt::format("{}: {}", input.text(), missing));
+    job.firstAsked = static_cast<size_t>(begin - frames.begin());
+    job.endAsked = static_cast<size_t>(end - frames.begin());
+    limitRunUps(job);
+}
+
+/// Chooses the frames that are written: all that are asked for, or those of "2/4", the second of four parts.
 void chooseShard(const std::string& text, ShotJob& job) {
     size_t part = 1, parts = 1;
     if (!text.empty()) {
@@ -96,9 +147,9 @@ void chooseShard(const std::string& text, ShotJob& job) {
             part > parts)
             throw UsageError(fmt::format("--shard {}: an example is 2/4, the second of four parts", text));
     }
-    const size_t count = job.frames.size();
-    job.firstWritten = count * (part - 1) / parts;
-    job.endWritten = count * part / parts;
+    const size_t count = job.endAsked - job.firstAsked;
+    job.firstWritten = job.firstAsked + count * (part - 1) / parts;
+    job.endWritten = job.firstAsked + count * part / parts;
 }
 
 /// What the result depends on besides the input.
@@ -165,6 +216,16 @@ void chooseMethod(const ShotRequest& r, ShotJob& job) {
             fmt::format("--bidirectional: --denoiser {} has no history", job.options.method->name));
 }
 
+/// Given cameras and others are in different spaces, so frames without one would spoil the histories of those
+/// that are asked for.
+void limitRunUpsToCameras(const CameraTrack& cameras, ShotJob& job) {
+    const auto has = [&](size_t index) { return cameras.lacking({&job.frames[index], 1}).empty(); };
+    size_t from = job.firstAsked, to = job.endAsked;
+    while (from > 0 && has(from - 1)) --from;
+    while (to < job.frames.size() && has(to)) ++to;
+    keepFrames(from, to, job);
+}
+
 void addCameras(const ShotRequest& r, ShotJob& job) {
     if (r.cameras.empty()) return;
     const float fps = r.cameraTiming.framesPerSecond;
@@ -174,7 +235,8 @@ void addCameras(const ShotRequest& r, ShotJob& job) {
         throw UsageError("--camera-start is from -1e9 to 1e9");
     auto cameras = std::make_shared<const CameraTrack>(CameraTrack::read(r.cameras, r.cameraTiming));
     job.settingsText += " " + hashText(cameras->hash());
-    const std::vector<int> lacking = job.input.numbered() ? cameras->lacking(job.frames) : std::vector<int>{};
+    const std::vector<int> lacking =
+        job.input.numbered() ? cameras->lacking(askedFrames(job)) : std::vector<int>{};
     if (!lacking.empty()) {
         const char* const text =
             cameras->ofAnimation()
@@ -183,6 +245,8 @@ void addCameras(const ShotRequest& r, ShotJob& job) {
                 : "{} has no camera for frames {}";
         job.warnings.push_back(fmt::format(fmt::runtime(text), r.cameras, describeFrames(lacking)));
     }
+    limitRunUpsToCameras(*cameras, job);
+    job.load.givesCameras = true;
     job.options.cameras = std::move(cameras);
 }
 
@@ -192,7 +256,7 @@ void chooseFrames(const ShotRequest& r, ShotJob& job) {
     job.cutFrames = cuts.value_or(std::vector<int>{});
     if (r.onError != "stop" && r.onError != "skip") throw UsageError("--on-error is 'stop' or 'skip'");
     job.skipUnreadable = r.onError == "skip";
-    job.frames = framesOf(r, job.input);
+    findFrames(r, job);
     chooseShard(r.shard, job);
     job.resume = r.resume;
 }
@@ -222,7 +286,7 @@ std::set<int> sourcesOf(const FramePattern& pattern, const ShotJob& job) {
 bool isReplaced(const FramePattern& pattern, const std::set<fs::path>& outputs, const ShotJob& job) {
     const auto isOutput = [&](int frame) {
         const fs::path file = pattern.format(std::max(frame, 0));
-        const bool written = std::binary_search(job.frames.begin(), job.frames.end(), frame);
+        const bool written = std::ranges::binary_search(askedFrames(job), frame);
         try {
             // isSameFile() also knows hard links.
             return outputs.contains(wholePath(file)) || (written && isSameFile(file, outputOf(job, frame)));
@@ -236,7 +300,7 @@ bool isReplaced(const FramePattern& pattern, const std::set<fs::path>& outputs, 
 /// Throws UsageError if an output is a file that this job or another one of the same shot reads.
 void refuseReplacing(const ShotRequest& r, const ShotJob& job) {
     std::set<fs::path> outputs;
-    for (const int frame : job.frames) outputs.insert(wholePath(outputOf(job, frame)));
+    for (const int frame : askedFrames(job)) outputs.insert(wholePath(outputOf(job, frame)));
     if (isReplaced(job.input, outputs, job)) throw UsageError("'" + r.output + "': the output is the input");
     for (const auto& [name, pattern] : job.load.files) {
         if (isReplaced(pattern, outputs, job))
@@ -271,9 +335,9 @@ ShotJob jobOf(const ShotRequest& r) {
     job.load.files = filesOf(r, job.input.numbered());
     if (r.motion != "auto" && r.motion != "none") throw UsageError("--motion is 'auto' or 'none'");
     job.load.searchMotion = r.motion == "auto";
-    job.load.sequence = job.frames.size() > 1;
     job.settingsText = settingsText(r);
     addCameras(r, job);
+    job.load.sequence = job.frames.size() > 1;  // also if one of them is asked for
     checkFiles(r, job);
     return job;
 }

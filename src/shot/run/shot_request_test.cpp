@@ -1,5 +1,6 @@
 #include "shot/run/shot_request.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -29,9 +30,85 @@ class ShotRequestTest : public testing::Test {
         return "none";
     }
 
+    /// "4 5 [6] 7": the frames of the job; those in brackets are written.
+    std::string framesOf(const std::string& frames, const std::string& shard = {}) {
+        request_.output = path("b.%d.exr");
+        request_.frames = frames;
+        request_.shard = shard;
+        const ShotJob job = jobOf(request_);
+        warnings_ = job.warnings;
+        isSequence_ = job.load.sequence;
+        std::string text;
+        for (size_t i = 0; i < job.frames.size(); ++i)
+            text += fmt::format("{}{}{}{}", i > 0 ? " " : "", i == job.firstWritten ? "[" : "", job.frames[i],
+                                i + 1 == job.endWritten ? "]" : "");
+        return text;
+    }
+    void remove(int frame) { std::filesystem::remove(folder_ / fmt::format("a.{}.exr", frame)); }
+
     image::test::TempFolder folder_;
     ShotRequest request_;
+    std::vector<std::string> warnings_;
+    bool isSequence_ = false;
 };
+
+TEST_F(ShotRequestTest, FramesAroundThoseThatAreAskedForMakeHistories) {
+    EXPECT_EQ(framesOf(""), "[1 2 3 4 5 6 7 8 9 10 11 12]");
+    EXPECT_EQ(framesOf("5-6"), "1 2 3 4 [5 6] 7 8 9 10 11 12");
+    EXPECT_EQ(framesOf("7"), "1 2 3 4 5 6 [7] 8 9 10 11 12");
+    EXPECT_TRUE(isSequence_);
+    EXPECT_EQ(framesOf("3-10", "2/2"), "1 2 3 4 5 6 [7 8 9 10] 11 12") << "a part of these frames";
+    remove(4);
+    remove(9);
+    EXPECT_EQ(framesOf("6-7"), "5 [6 7] 8") << "no history goes across a gap";
+    EXPECT_THROW(framesOf("3-6"), InputError);
+    EXPECT_THROW(framesOf("20-30"), InputError);
+    remove(5);
+    remove(7);
+    EXPECT_EQ(framesOf("6"), "[6]");
+    EXPECT_FALSE(isSequence_);
+}
+
+TEST_F(ShotRequestTest, RunUpsAreLimited) {
+    for (int frame = 13; frame <= 60; ++frame) image::test::put(folder_ / fmt::format("a.{}.exr", frame), "");
+    const std::string text = framesOf("30-31");
+    EXPECT_TRUE(text.starts_with("14 15 ")) << text;
+    EXPECT_TRUE(text.ends_with(" 46 47")) << text;
+}
+
+TEST_F(ShotRequestTest, RunUpsHaveCamerasIfTheFramesDo) {
+    const std::string camera = R"({"eye": [0, 0, 1], "forward": [0, 0, -1], "up": [0, 1, 0], "fov_y": 40})";
+    image::test::put(folder_ / "c.json",
+                     fmt::format(R"({{"frames": {{"4": {0}, "5": {0}, "6": {0}}}}})", camera));
+    request_.cameras = path("c.json");
+    EXPECT_EQ(framesOf("5-6"), "4 [5 6]");
+    EXPECT_TRUE(warnings_.empty());
+    EXPECT_EQ(framesOf("6"), "4 5 [6]");
+    EXPECT_EQ(framesOf("4"), "[4] 5 6");
+    EXPECT_EQ(framesOf("6-8"), "4 5 [6 7 8]");
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("has no camera for frames 7-8"), std::string::npos) << warnings_[0];
+}
+
+TEST_F(ShotRequestTest, MissingFramesAreNamed) {
+    request_.onError = "skip";
+    framesOf("");
+    EXPECT_TRUE(warnings_.empty());
+    for (const int frame : {3, 7, 8}) remove(frame);
+    EXPECT_EQ(framesOf(""), "[1 2 4 5 6 9 10 11 12]");
+    EXPECT_EQ(warnings_, std::vector{path("a.%d.exr") + ": frames 3, 7-8 are missing"});
+    EXPECT_EQ(framesOf("4-7"), "[4 5 6]");
+    EXPECT_EQ(warnings_, std::vector{path("a.%d.exr") + ": frame 7 is missing"});
+    framesOf("0-2147483647");
+    EXPECT_EQ(warnings_, std::vector{path("a.%d.exr") + ": frames 0, 3, 7-8, 13-2147483647 are missing"});
+    for (int frame = 20; frame <= 100; frame += 2)
+        image::test::put(folder_ / fmt::format("a.{}.exr", frame), "");
+    framesOf("");
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_TRUE(warnings_[0].ends_with(", 53 and others (50 in all) are missing")) << warnings_[0];
+    request_.onError = "stop";
+    EXPECT_THROW(framesOf("1-4"), InputError);
+}
 
 TEST_F(ShotRequestTest, NoOutputMayBeAnInput) {
     EXPECT_EQ(faultOf("b.%d.exr"), "none");

@@ -80,6 +80,13 @@ void addAttribute(ExrPart& part, const std::string& name, const Imf::Attribute& 
     }
 }
 
+/// 0 if the window is empty.
+uint64_t pixelsIn(const Imath::Box2i& window) {
+    if (window.isEmpty()) return 0;
+    return (static_cast<uint64_t>(window.max.x - window.min.x) + 1) *
+           (static_cast<uint64_t>(window.max.y - window.min.y) + 1);
+}
+
 ExrPart describe(const ExrPartHeader& from) {
     ExrPart part;
     const Imf::Header& header = from.header;
@@ -270,8 +277,7 @@ struct ExrDocument::Content {
     void decode(size_t index) {
         const ExrFrame& frame = headers[index].frame;
         const Imath::Box2i& data = frame.data;
-        const uint64_t pixels = (static_cast<uint64_t>(data.max.x - data.min.x) + 1) *
-                                (static_cast<uint64_t>(data.max.y - data.min.y) + 1);
+        const uint64_t pixels = pixelsIn(data);
         if (pixels > maxPartBytes / frame.bytesPerPixel)
             throw InputError(name, fmt::format("has a part of {} million pixels with {} bytes each, which is "
                                                "too much",
@@ -401,6 +407,11 @@ uint32_t ExrDocument::height() const {
     return static_cast<uint32_t>(display.max.y - display.min.y) + 1;
 }
 
+float ExrDocument::pixelAspect() const {
+    const float aspect = content_->headers.front().header.pixelAspectRatio();
+    return aspect >= 1e-6f && aspect <= 1e6f ? aspect : 1.0f;  // as OpenEXR limits it
+}
+
 std::span<const ExrPart> ExrDocument::parts() const {
     return content_->parts;
 }
@@ -412,8 +423,15 @@ void ExrDocument::decode(size_t part) {
 uint64_t ExrDocument::decodedBytes(size_t part) const {
     if (content_->isAttached(part) || !content_->parts[part].unreadable.empty()) return 0;
     const ExrFrame& frame = content_->headers[part].frame;
-    return (static_cast<uint64_t>(frame.data.max.x - frame.data.min.x) + 1) *
-           (static_cast<uint64_t>(frame.data.max.y - frame.data.min.y) + 1) * frame.bytesPerPixel;
+    return pixelsIn(frame.data) * frame.bytesPerPixel;
+}
+
+uint64_t ExrDocument::pixelsOutside(size_t part) const {
+    if (content_->isAttached(part) || !content_->parts[part].unreadable.empty()) return 0;
+    const Imath::Box2i data = content_->headers[part].frame.data, display = content_->display();
+    const Imath::Box2i shared({std::max(data.min.x, display.min.x), std::max(data.min.y, display.min.y)},
+                              {std::min(data.max.x, display.max.x), std::min(data.max.y, display.max.y)});
+    return pixelsIn(data) - pixelsIn(shared);
 }
 
 std::vector<float> ExrDocument::values(size_t part, std::string_view channel) {

@@ -56,6 +56,9 @@ class ExrDocument {
     uint32_t width() const;
     uint32_t height() const;
 
+    /// A pixel's width over its height; 1 in most files.
+    float pixelAspect() const;
+
     std::span<const ExrPart> parts() const;
 
     /// Lets the image's channels be read like those of a part of this name. They are not written, and cannot
@@ -68,6 +71,10 @@ class ExrDocument {
 
     /// The memory that decode() takes; 0 for parts that cannot be read.
     uint64_t decodedBytes(size_t part) const;
+
+    /// How many pixels the part stores outside the display window (overscan). They cannot be read or
+    /// replaced. 0 for parts that cannot be read.
+    uint64_t pixelsOutside(size_t part) const;
 
     /// Returns width * height values; Uint as exact integers below 2^24. Throws InputError if the part cannot
     /// be read, and Error if there is no such channel.

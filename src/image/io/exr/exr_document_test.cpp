@@ -359,6 +359,22 @@ TEST(ExrDocument, PixelsOutsideTheDataWindowAreZeroAndThoseOutsideTheFrameStay) 
     }
 }
 
+TEST(ExrDocument, CountsPixelsOutsideTheFrame) {
+    TempFolder folder;
+    const auto outside = [&](const Box2i& data) {
+        writeSingle(folder / "a.exr", makeHeader(Imf::ZIP_COMPRESSION, data));
+        const ExrDocument document = ExrDocument::read(folder / "a.exr");
+        EXPECT_EQ(document.pixelAspect(), 1.5f);
+        return document.pixelsOutside(0);
+    };
+    EXPECT_EQ(outside(frameWindow), 0u);
+    EXPECT_EQ(outside({{3, 4}, {5, 6}}), 0u) << "a crop";
+    EXPECT_EQ(outside({{-2, -1}, {frameWidth, frameHeight - 1}}),
+              uint64_t{(frameWidth + 3) * (frameHeight + 1) - frameWidth * frameHeight});
+    EXPECT_EQ(outside({{-2, 0}, {0, 0}}), 2u);
+    EXPECT_EQ(outside({{100, 100}, {103, 100}}), 4u) << "nothing is inside";
+}
+
 TEST(ExrDocument, ConvertsToAndFromTheTypeOfEachChannel) {
     TempFolder folder;
     Imf::Header header(6, 1);
