@@ -39,10 +39,14 @@ function(limpid_add_suite SUITE)
   endif()
   add_test("${TEST}" "${PROGRAM}" "--gtest_filter=${NAMES}" --gtest_brief=1)
   set_tests_properties("${TEST}" PROPERTIES LABELS "${LABELS}" TIMEOUT 1800 COST ${COST})
-  # They judge how soon the window reacts: beside them only one other test runs on two cores. Started later than others,
-  # they would wait for two free places until all others have ended.
-  if("${TEST}" MATCHES "^View|^CliView")
-    set_tests_properties("${TEST}" PROPERTIES PROCESSORS 2 COST 1000)
+  # These are the longest, and mostly wait.
+  if("${TEST}" MATCHES "^View")
+    set_tests_properties("${TEST}" PROPERTIES COST 1000)
+  endif()
+  # It judges how soon the window reacts: beside it only one other test runs on two cores. Started later than others, it
+  # would wait for two free places until all others have ended.
+  if("${TEST}" STREQUAL "ViewLayoutTest")
+    set_tests_properties("${TEST}" PROPERTIES PROCESSORS 2 COST 2000)
   endif()
 endfunction()
 

@@ -303,14 +303,16 @@ void ViewerWindow::writeControls() {
     std::ranges::replace(values, '\n', ';');
     std::string reasons = panel_.reasons;
     std::ranges::replace(reasons, '\n', ';');
-    const std::string text = fmt::format(
-                                 "frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\nreasons\t{}"
-                                 "\nvalues\t{}\ncompared\t{}\n"
-                                 "scenes\t{}\nactivity\t{}\nrendering\t{}\n",
-                                 facts.frames, facts.samplesInMean, facts.fault, facts.message, panel_.probe,
-                                 reasons, values, facts.comparedWith, facts.scenesShown, facts.activityText(),
-                                 facts.computing || !pending_.empty() ? "yes" : "no") +
-                             controls_.lines();
+    const std::string text =
+        fmt::format(
+            "frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\nreasons\t{}"
+            "\nvalues\t{}\ncompared\t{}\n"
+            "scenes\t{}\nactivity\t{}\nrendering\t{}\nclicks\t{}\n",
+            facts.frames, facts.samplesInMean, facts.fault, facts.message, panel_.probe, reasons, values,
+            facts.comparedWith, facts.scenesShown, facts.activityText(),
+            facts.computing || !pending_.empty() || !window_.input().empty() ? "yes" : "no",
+            window_.input().clicks()) +
+        controls_.lines();
     if (text == controlsText_) return;
     controlsText_ = text;
     writeTextAtomically(settings_.controls, text);

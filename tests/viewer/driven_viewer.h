@@ -154,9 +154,11 @@ class DrivenViewer {
     /// Clicks at a fraction of the control's width.
     void press(const std::string& name, double share) const {
         const Control c = reveal(name);
-        xdotool("mousemove " + std::to_string(static_cast<int>(c.left + share * (c.right - c.left) + 3)) +
-                " " + std::to_string(static_cast<int>(0.5f * (c.top + c.bottom))) +
-                " sleep 0.15 mousedown 1 sleep 0.15 mouseup 1 sleep 0.05");
+        const double before = number("clicks");
+        xdotool(fmt::format("mousemove {} {} click 1",
+                            static_cast<int>(c.left + share * (c.right - c.left) + 3),
+                            static_cast<int>(0.5f * (c.top + c.bottom))));
+        waitFor("the window to see a click on " + name, [&] { return number("clicks") > before; });
     }
     /// Types a number into a slider or drag control, at a fraction of its width.
     void type(const std::string& name, const std::string& text, double share = 0.03) const {
@@ -190,7 +192,7 @@ class DrivenViewer {
             const std::string now = fact("frames") + " " + fact("samples");
             const bool same = now == last && fact("rendering") == "no";
             last = now;
-            std::this_thread::sleep_for(std::chrono::milliseconds(400));
+            std::this_thread::sleep_for(std::chrono::milliseconds(150));
             return same;
         });
         fs::remove(folder_ / "limpid.png");
@@ -225,7 +227,7 @@ class DrivenViewer {
             if (ended || std::chrono::steady_clock::now() > end)
                 throw std::runtime_error((ended ? "the program ended before " : "waited in vain for ") +
                                          what + "; log:\n" + get("log") + get("controls"));
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            std::this_thread::sleep_for(std::chrono::milliseconds(15));
         }
     }
     std::string get(const std::string& name) const { return slurp(folder_ / name); }

@@ -66,6 +66,7 @@ std::vector<InputEvent> InputQueue::take(bool typing) {
             taken.back() = next;
         else
             taken.push_back(next);
+        if (next.kind == Kind::Button && !next.down) ++clicks_;
         if (isControl(next)) {
             if (next.down)
                 controls_.insert(next.code);

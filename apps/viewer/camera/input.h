@@ -1,6 +1,7 @@
 // What mouse and keyboard did, in the order in which they did it, a frame's worth at a time.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <set>
 #include <vector>
@@ -27,10 +28,13 @@ class InputQueue {
     /// The events of the next frame. `typing`: into a field of text, to which characters matter and the keys
     /// that made them do not.
     std::vector<InputEvent> take(bool typing);
+    /// How often a button has come up in the events that were taken.
+    uint64_t clicks() const { return clicks_; }
 
   private:
     std::deque<InputEvent> events_;
     std::set<int> controls_;  ///< Control, Alt and the like that are held
+    uint64_t clicks_ = 0;
 };
 
 }  // namespace limpid::viewer
