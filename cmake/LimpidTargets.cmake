@@ -25,7 +25,7 @@ endif()
 # For targets that compile several files as one: local names may shadow constants of other files, and types in anonymous
 # namespaces seem to come from a header.
 add_library(limpid_unity_options INTERFACE)
-target_compile_options(limpid_unity_options INTERFACE -Wno-shadow -Wno-subobject-linkage)
+target_compile_options(limpid_unity_options INTERFACE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 if(LIMPID_SANITIZE)
   target_compile_options(limpid_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
                                                   -fno-omit-frame-pointer)

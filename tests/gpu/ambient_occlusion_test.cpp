@@ -165,7 +165,7 @@ TEST_P(AmbientOcclusionTest, CountsTheRaysThatBruteForceFindsOpen) {
             EXPECT_EQ(open[p], vec4(1, 1, 1, 0));
             continue;
         }
-        const dvec3 n(vec3(normal[p])), g(vec3(face[p]));
+        const dvec3 n = vec3(normal[p]), g = vec3(face[p]);
         const double s = n.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (s + n.z), b = n.x * n.y * a;
         const dvec3 tangent(1.0 + s * n.x * n.x * a, s * b, -s * n.x), bitangent(b, s + n.y * n.y * a, -n.y);
         const vec3 start = vec3(position[p]) + vec3(face[p]) * (128.0f / 16777216.0f * position[p].w);

@@ -209,7 +209,7 @@ TEST_P(GBufferTest, LightOfPunctualLampsIsThePathTracers) {
         size_t lit = 0;
         double worst = 0.0;
         for (size_t p = 0; p < light.size(); ++p) {
-            const dvec3 a(vec3(light[p])), b = dvec3(vec3(diffuse[p])) + dvec3(vec3(specular[p]));
+            const dvec3 a = vec3(light[p]), b = dvec3(vec3(diffuse[p])) + dvec3(vec3(specular[p]));
             lit += b.x > 0.0;
             if (glm::length(b) > 0.0) worst = std::max(worst, glm::length(a - b) / glm::length(b));
             ASSERT_LE(glm::length(a - b), 1e-5 * glm::length(b) + 1e-6)

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ranges>
 #include <span>
 #include <sstream>
 #include <string_view>
@@ -60,11 +59,10 @@ bool isAbout(const std::string& word, const std::string& group) {
 
 const std::string& denoiserOf(const std::vector<std::string>& words,
                               const std::vector<std::string>& denoisers) {
-    for (const std::string& denoiser : denoisers | std::views::reverse) {
-        if (std::ranges::any_of(words, [&](const std::string& word) { return isAbout(word, denoiser); }))
-            return denoiser;
-    }
-    return denoisers.back();
+    const auto found = std::find_if(denoisers.rbegin(), denoisers.rend(), [&](const std::string& denoiser) {
+        return std::ranges::any_of(words, [&](const std::string& word) { return isAbout(word, denoiser); });
+    });
+    return found == denoisers.rend() ? denoisers.back() : *found;
 }
 
 RenderSettings withDenoiser(RenderSettings settings, const std::string& name, const MethodChoice& choice) {

@@ -48,7 +48,8 @@ Causes causesOf(uint32_t reason) {
         causes.used += taps[static_cast<size_t>(i)] != TAP_UNUSED;
     }
     for (const auto& [code, words] : known) {
-        const auto count = std::ranges::count_if(taps, [&](uint32_t tap) { return applies(tap, code); });
+        const auto count =
+            std::ranges::count_if(taps, [&, code = code](uint32_t tap) { return applies(tap, code); });
         if (count > 0) causes.all.push_back({words, static_cast<int>(count)});
     }
     std::ranges::stable_sort(causes.all, std::ranges::greater(), &Cause::taps);

@@ -49,7 +49,7 @@ void patch(Bytes& bytes, const std::string& name, const std::string& type, size_
     const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const size_t at = text.find(key);
     ASSERT_NE(at, std::string::npos) << name;
-    std::memcpy(bytes.data() + at + key.size() + 4 + offset, values.data(), 4 * values.size());
+    std::memcpy(bytes.data() + (at + key.size() + 4 + offset), values.data(), 4 * values.size());
 }
 
 TEST(ExrMalformed, EveryTruncationIsAnInputError) {

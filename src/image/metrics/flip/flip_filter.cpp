@@ -1,3 +1,5 @@
+#include <cstring>
+
 #include "image/metrics/flip/flip_rows.h"
 
 namespace limpid::image {

@@ -1,5 +1,7 @@
 // Like flip_filter.cpp, compiled for AVX2 with fused multiply-add. On a constant input the result is still
 // exact.
+#include <cstring>
+
 #include "image/metrics/flip/flip_rows.h"
 
 namespace limpid::image {

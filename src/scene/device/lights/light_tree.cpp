@@ -205,10 +205,10 @@ class LightTreeBuilder {
         if (depth + needed < LightTree::maxDepth) {
             const Split best = bestSplit(lights, ranges);
             if (std::isfinite(best.cost)) {
-                const auto right = std::ranges::partition(lights, [&](const SplitLight& light) {
+                const auto right = std::partition(lights.begin(), lights.end(), [&](const SplitLight& light) {
                     return ranges.binOf(light, best.axis) <= best.bin;
                 });
-                return static_cast<uint32_t>(right.begin() - lights.begin());
+                return static_cast<uint32_t>(right - lights.begin());
             }
         }
         const auto middle = lights.begin() + static_cast<std::ptrdiff_t>(lights.size() / 2);
@@ -331,8 +331,7 @@ std::vector<uint32_t> LightTree::refit() {
     }
     std::vector<uint32_t> changed = std::exchange(changed_, {});
     std::ranges::sort(changed);
-    const auto rest = std::ranges::unique(changed);
-    changed.erase(rest.begin(), rest.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     return changed;
 }
 
