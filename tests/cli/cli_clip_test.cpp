@@ -151,6 +151,19 @@ TEST_F(CliClipTest, AnInterruptedRenderKeepsItsFrames) {
     EXPECT_EQ(probe("a.mp4").substr(0, 6), "34,18,");
 }
 
+/// ffmpeg makes a file of no frames, too, which would replace the old clip.
+TEST_F(CliClipTest, InterruptedBeforeItsFirstFrameItKeepsTheOldClip) {
+    put("a.gif", "old");
+    const Result result = runProgram(std::string("timeout -s INT 2 '") + LIMPID_PROGRAM +
+                                     "' render builtin:cornell-moving --width 33 --height 17 --spp 1000000 "
+                                     "--frames 3 --device cpu -o " +
+                                     path("a.gif"));
+    EXPECT_EQ(result.code, 124) << result.output;
+    EXPECT_NE(result.output.find("wrote nothing to " + path("a.gif")), std::string::npos) << result.output;
+    EXPECT_EQ(get("a.gif"), "old");
+    EXPECT_EQ(files(), 1u) << "no temporary file stays";
+}
+
 TEST_F(CliClipTest, AskedTwiceItEndsAtOnceAndLeavesNoFile) {
     // An encoder that is slow to finish, so that the second signal finds the render at work.
     const std::string slow =

@@ -196,6 +196,13 @@ TEST_F(CliCompareTest, WrongUsageIsExitCode2) {
     expect(
         "compare " + path("test.0001.exr") + " " + path("ref.0001.exr") + " --error-map " + path("e%d.png"),
         2, "one picture");
+    const std::string pair = "compare " + path("test.0001.exr") + " " + path("m.png");
+    expect(pair + " --error-map " + path("./m.png"), 2, "is REFERENCE");
+    expect(pair + " --error-map " + path("e.png") + " --hdr-error-map " + path("e.png"), 2, "other map");
+    expect("compare " + path("t%04d.png") + " " + path("m.png") + " --error-map " + path("t%d.png"), 2,
+           "is TEST");
+    expect("compare " + path("t%d.png") + " " + path("m7.png") + " --error-map " + path("m%d.png"), 2,
+           "is REFERENCE");
     expect("compare " + sequences() + " --exposure bright", 2, "--exposure");
     expect("compare " + sequences() + " --error-map " + path("none/e%d.png"), 1, "does not exist");
 }

@@ -69,6 +69,9 @@ TEST_F(CliDatasetTest, SaysWhatIsWrong) {
     expect("dataset --samples 4,1 -o '" + path("data") + "'", 2, "ascend");
     expect("dataset --device cpu --rooms 0 --scene nothing.gltf -o '" + path("data") + "'", 3,
            "nothing.gltf");
+    expect("dataset --device cpu --rooms 100 --scene nothing.gltf -o '" + path("data") + "'", 3,
+           "nothing.gltf: does not exist");
+    EXPECT_FALSE(fs::exists(path("data"))) << "found before the rooms are rendered";
     put("file", "");
     expect("dataset -o '" + path("file/data") + "'", 1, "cannot be made");
 }

@@ -97,6 +97,16 @@ TEST_F(CliFilesTest, ACheckpointIsNoOutput) {
     EXPECT_EQ(run(render + "-o " + path("a.exr") + " --checkpoint " + path("a.ck")).code, 0);
 }
 
+TEST_F(CliFilesTest, AnEnvironmentMapIsNoOutput) {
+    const std::string render = std::string("render builtin:cornell") + tiny;
+    ASSERT_EQ(run(render + "-o " + path("sky1.exr")).code, 0);
+    const std::string sky = get("sky1.exr"), with = render + "--env " + path("sky1.exr") + " -o ";
+    expect(with + path("./sky1.exr"), 2, "which would replace it");
+    expect(with + path("sky%d.exr") + " --frames 3", 2, "which would replace it");
+    EXPECT_EQ(get("sky1.exr"), sky);
+    EXPECT_EQ(run(with + path("a.exr")).code, 0);
+}
+
 TEST_F(CliFilesTest, AnOutputThatIsASymbolicLinkIsFollowed) {
     fs::create_directories(folder_ / "there");
     put("there/real.png", "old");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "image/io/exr/exr.h"
+#include "image/io/png/png.h"
 #include "tests/cli/cli_fixture.h"
 
 namespace limpid {
@@ -194,9 +196,12 @@ TEST_F(CliLongRenderTest, MergedPngsAndFloatsAreThoseOfOneRun) {
         expectDone(scene + fmt::format("--shard {0}/2 -o {1}/{0}.sums", shard, folder_.string()));
     expectDone("merge " + path("1.sums") + " " + path("2.sums") + " -o " + path("merged.png"));
     expectSame("whole.png", "merged.png");
-    expectDone(scene + "--float -o " + path("whole.exr"));
+    // With a jitter that the file tells.
+    const std::string floats = scene + "--float --jitter frame ";
+    expectDone(floats + "-o " + path("whole.exr"));
+    EXPECT_TRUE(image::readExr(path("whole.exr")).metadata.contains("limpid.jitter"));
     for (const char* shard : {"1", "2"})
-        expectDone(scene + fmt::format("--float --shard {0}/2 -o {1}/{0}.sums", shard, folder_.string()));
+        expectDone(floats + fmt::format("--shard {0}/2 -o {1}/{0}.sums", shard, folder_.string()));
     expectDone("merge " + path("1.sums") + " " + path("2.sums") + " -o " + path("merged.exr"));
     expectSame("whole.exr", "merged.exr");
 }
@@ -296,6 +301,69 @@ TEST_F(CliLongRenderTest, ACheckpointThatDoesNotFitIsRefused) {
     expect(scene + "--resume", 3, "checksum");
     EXPECT_EQ(get("a.ck"), damaged) << "a refused checkpoint is left alone";
     EXPECT_FALSE(fs::exists(path("a.exr")));
+}
+
+/// The finished frames keep their look; a still gets the new one.
+TEST_F(CliLongRenderTest, FramesOfOneSequenceLookAlike) {
+    const auto with = [&](const char* ck) { return "--spp 1 --resume --checkpoint " + path(ck) + small; };
+    const std::string sequence =
+        "render builtin:cornell-moving --frames 2 -o " + path("%d.png ") + with("s.ck");
+    expectDone(sequence);
+    expect(sequence + "--exposure 1", 3, "look different: --exposure is auto, not 1");
+    expect(sequence + "--tone-curve agx", 3, "--tone-curve is standard, not agx");
+    expect(sequence + "--float", 3, "--float is false, not true");
+    expectDone(sequence);
+    const std::string still = "render builtin:cornell -o " + path("a.png ") + with("a.ck");
+    expectDone(still);
+    const std::string before = get("a.png");
+    expectDone(still + "--exposure 5");
+    EXPECT_NE(get("a.png"), before);
+}
+
+/// An open shutter sees the camera between the frames' times, too.
+TEST_F(CliLongRenderTest, ABlurredRenderIsOfItsWholeCameraPath) {
+    const auto drive = [&](const char* to) {
+        put("path.json", fmt::format(R"({{"keys": [{{"time": 0, "eye": [0, 1, 3], "target": [0, 1, 0]}},
+            {{"time": 1, "eye": [0, 1, {}], "target": [0, 1, 0]}}]}})",
+                                     to));
+    };
+    const std::string scene = "render builtin:cornell --spp 16 --fps 1 --camera-path " + path("path.json") +
+                              " --resume --checkpoint " + path("a.ck") + " -o " + path("a.exr") + small;
+    drive("2");
+    expectDone(scene + "--shutter 1");
+    expectDone(scene + "--shutter 1");
+    drive("1.5");
+    expect(scene + "--shutter 1", 3, "another render: the camera");
+}
+
+/// Each frame has its own rays only, so a late one blurs a fine texture as much as the first.
+TEST_F(CliLongRenderTest, FramesWithAJitterFilterTexturesAlike) {
+    image::ByteImage noise{256, 256, 3, {}};
+    std::mt19937 random(1);
+    for (size_t p = 0; p < size_t{256} * 256; ++p)
+        noise.pixels.insert(noise.pixels.end(), 3, static_cast<uint8_t>(random() % 2 * 255));
+    image::writePng(folder_ / "noise.png", noise);
+    put("a.mtl", "newmtl m\nKd 0 0 0\nKe 1 1 1\nmap_Ke noise.png\n");
+    put("a.obj",
+        "mtllib a.mtl\nusemtl m\nv -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nvt 0 0\nvt 16 0\nvt 16 16\nvt 0 16\n"
+        "f 1/1 2/2 3/3 4/4\n");
+    const auto contrastOf = [&](int frame) {
+        expectDone(
+            "render " + path("a.obj") + small + "--eye 0,0,8 --target 0,0,0 --background 0,0,0 " +
+            fmt::format("--max-depth 0 --jitter frame --spp 1 --frames 1000 --shard {}/1000 -o ", frame + 1) +
+            path("%d.png") + " --exposure 0 --tone-curve none");
+        const image::ByteImage picture = image::readPngOrJpeg(path(fmt::format("{}.png", frame)));
+        double sum = 0.0, squares = 0.0, count = 0.0;
+        for (size_t i = 0; i < picture.pixels.size(); i += picture.components, ++count) {
+            const double value = picture.pixels[i];
+            sum += value;
+            squares += value * value;
+        }
+        EXPECT_GT(sum / count, 100.0) << "the texture fills the picture";
+        return std::sqrt(squares / count - sum * sum / (count * count));
+    };
+    EXPECT_LT(contrastOf(0), 4.0);
+    EXPECT_LT(contrastOf(999), 4.0) << "16 if the rays of all frames are counted";
 }
 
 TEST_F(CliLongRenderTest, EmptyShardsSaySo) {

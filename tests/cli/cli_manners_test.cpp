@@ -107,6 +107,10 @@ TEST_F(CliMannersTest, PreviewsAreForStills) {
            "--preview is for stills");
     expect("render builtin:cornell --denoiser svgf --preview -o " + path("a.png"), 2,
            "--preview is for stills");
+    fs::create_directory(path("a.preview.png"));
+    expect("render builtin:cornell --spp 1 --width 16 --height 9 --device cpu --preview -o " + path("a.exr"),
+           1, "a.preview.png: is a directory");
+    EXPECT_FALSE(fs::exists(path("a.exr"))) << "found before the render, not three seconds into it";
 }
 
 }  // namespace

@@ -25,6 +25,11 @@ TEST_F(CliTest, WrongUsageIsExitCode2) {
     expect("render builtin:cornell -o " + path("a.exr") + tiny + "--aov nonsense", 2, "the layers are");
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--exposure nan", 2, "range");
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--dump none", 2, "its passes are");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--env a.hdr --background 1,1,1", 2,
+           "give one of them");
+    for (const char* camera : {"--camera 0", "--eye 0,1,3 --target 0,1,0", "--fov 40"})
+        expect("render builtin:cornell -o " + path("a.png") + tiny + "--camera-path p.json " + camera, 2,
+               "has its own cameras");
 }
 
 /// The background is only black if the user asks for it.

@@ -60,6 +60,30 @@ std::optional<FramePattern> parseMap(const char* option, const std::string& text
     return pattern;
 }
 
+/// Whether a frame of the map has the same file as one of the others.
+bool meets(const FramePattern& map, const FramePattern& other) {
+    constexpr int longest = 1'000'000'000;  // no pattern pads so long a number
+    if (isSameFile(map.format(longest), other.format(longest))) return true;
+    if (!map.numbered() || other.numbered()) return false;
+    const std::optional<int> frame = map.frameOf(other.format(0).filename().string());
+    return frame && isSameFile(map.format(*frame), other.format(0));
+}
+
+/// A map would replace what it shows, or the other map.
+void checkMapsAreNoInputs(const CompareOptions& o) {
+    const auto refuse = [](const FramePattern& map, const FramePattern& other, const char* what) {
+        if (meets(map, other))
+            throw UsageError(
+                fmt::format("'{}' is {}: an error map needs files of its own", map.text(), what));
+    };
+    for (const std::optional<FramePattern>& map : {o.errorMap, o.hdrErrorMap}) {
+        if (!map) continue;
+        refuse(*map, o.test, "TEST");
+        refuse(*map, o.reference, "REFERENCE");
+    }
+    if (o.errorMap && o.hdrErrorMap) refuse(*o.errorMap, *o.hdrErrorMap, "the other map, too");
+}
+
 CompareOptions parse(const Arguments& arguments) {
     CompareOptions options{.test = FramePattern(arguments.test),
                            .reference = FramePattern(arguments.reference)};
@@ -72,6 +96,7 @@ CompareOptions parse(const Arguments& arguments) {
     options.autoExposure = arguments.exposure == "auto";
     options.errorMap = parseMap("--error-map", arguments.errorMap, sequence);
     options.hdrErrorMap = parseMap("--hdr-error-map", arguments.hdrErrorMap, sequence);
+    checkMapsAreNoInputs(options);
     options.json = arguments.json;
     return options;
 }

@@ -12,6 +12,7 @@
 #include "renderer/layers/layers.h"
 #include "renderer/method/parameters.h"
 #include "renderer/method/presets.h"
+#include "scene/framing/camera_path.h"
 
 namespace limpid::cli {
 namespace {
@@ -41,6 +42,7 @@ void checkOutput(const RenderOptions& o) {
     }
     if (sums) return checkWritable(path);
     checkPictureOutput(path, !o.layers.empty());
+    if (o.preview) checkWritable(previewFile(path));
 }
 
 /// Returns the frames of the output whose file may have this name.
@@ -64,6 +66,33 @@ void checkCheckpointIsNoOutput(const RenderOptions& o) {
             throw UsageError("--checkpoint: '" + o.longRender.checkpoint + "' is the output '" +
                              file.string() + "'; they must be two files");
     }
+}
+
+/// The environment map would be gone. A scene's textures are not looked for.
+void checkEnvironmentIsNoOutput(const RenderOptions& o) {
+    const std::string& environment = o.scene.source.environment;
+    if (environment.empty()) return;
+    const FramePattern output(o.output);
+    for (const int frame : framesThatMayBe(output, environment)) {
+        if (isSameFile(output.format(frame), environment))
+            throw UsageError("--env: '" + environment + "' is the output, which would replace it");
+    }
+}
+
+/// Otherwise one of two options would have no effect, without a word.
+void checkScene(const RenderOptions& o) {
+    const SceneChoice& c = o.scene;
+    if (!c.source.environment.empty() && !c.source.background.empty())
+        throw UsageError("--env and --background are two environments: give one of them");
+    const std::string& path = o.sequence.cameraPath;
+    const bool cameraGiven =
+        !c.camera.empty() || !c.eye.empty() || !c.target.empty() || !c.up.empty() || c.fov > 0.0f;
+    if (cameraGiven && !path.empty() && !scene::isBuiltinCameraPath(path))
+        throw UsageError(
+            "--camera-path '" + path +
+            "' has its own cameras: --camera, --eye, --target, --up and --fov do not go with it");
+    if (c.fov > 0.0f && o.lens.focalLength > 0.0f)
+        throw UsageError("--fov and --focal-length say the same: give one of them");
 }
 
 void checkShutter(const RenderOptions& o) {
@@ -241,11 +270,11 @@ void checkRenderOptions(const RenderOptions& o) {
         throw UsageError("--preview is for stills by --integrator path or direct and --denoiser none");
     checkLens(o.lens, pipeline);
     checkShutter(o);
-    if (o.scene.fov > 0.0f && o.lens.focalLength > 0.0f)
-        throw UsageError("--fov and --focal-length say the same: give one of them");
+    checkScene(o);
     checkLongRender(o.longRender);
     checkOutput(o);
     checkCheckpointIsNoOutput(o);
+    checkEnvironmentIsNoOutput(o);
     parseExposure(o.exposure);
     chosenLayers(o);
     settingsOf(o);

@@ -265,6 +265,7 @@ void ClipWriter::add(const image::Image& beauty, std::span<const float> subject)
     if (bytes.width != format_.width || bytes.height != format_.height || bytes.components != 3)
         throw Error("the frames of a clip must be RGB, and all have its size");
     send(evenSize_ ? madeEven(bytes) : bytes);
+    isEmpty_ = false;
 }
 
 void ClipWriter::finish() {

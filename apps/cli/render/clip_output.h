@@ -47,6 +47,8 @@ class ClipWriter {
     void add(const image::Image& beauty, std::span<const float> subject);
     /// To be called once, after the last frame. Throws as add() does.
     void finish();
+    /// No frame was added: what ffmpeg makes of none is no clip.
+    bool isEmpty() const { return isEmpty_; }
 
   private:
     void start(const std::filesystem::path& file);
@@ -57,6 +59,7 @@ class ClipWriter {
 
     ClipFormat format_;
     bool evenSize_;  ///< a row or column more where there would be an odd number
+    bool isEmpty_ = true;
     pid_t process_ = -1;
     int input_ = -1, faults_ = -1;
 };

@@ -6,6 +6,7 @@
 #include "image/metrics/metrics.h"
 #include "image/tonemap.h"
 #include "renderer/frame/camera_text.h"
+#include "renderer/frame/frame.h"
 #include "renderer/long/merge/merge_frames.h"
 #include "renderer/long/render_identity.h"
 
@@ -16,6 +17,10 @@ namespace fs = std::filesystem;
 void checkPictureOutput(const fs::path& path, bool layers) {
     limpid::checkPictureOutput(path);
     if (layers && !isExr(path)) throw UsageError("--aov needs an .exr output");
+}
+
+fs::path previewFile(fs::path output) {
+    return isExr(output) ? output.replace_extension(".preview.png") : output;
 }
 
 PictureFormat formatOf(const AccumulationHeader& header) {
@@ -31,6 +36,10 @@ std::map<std::string, std::string> metadataOf(const AccumulationHeader& header, 
                                                 {"limpid.device", header.device},
                                                 {"limpid.driver", header.driver},
                                                 {cameraAttribute, camera}};
+    RenderSettings settings;
+    settings.jitter = header.value(jitterEntry) == toString(Jitter::Frame) ? Jitter::Frame : Jitter::Off;
+    if (const auto jitter = jitterOf(settings, frame, header.plan.samples))
+        metadata[jitterAttribute] = jitterText(*jitter);
     metadata.merge(frameMetadata(header, frame));
     return metadata;
 }

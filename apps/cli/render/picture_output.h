@@ -16,6 +16,9 @@ namespace limpid::cli {
 /// As limpid::checkPictureOutput(), and throws UsageError unless layers go to an .exr.
 void checkPictureOutput(const std::filesystem::path& path, bool layers);
 
+/// Where --preview writes.
+std::filesystem::path previewFile(std::filesystem::path output);
+
 struct PictureFormat {
     std::vector<std::string> layers;                          ///< of an EXR, besides beauty
     bool floatColors = false;                                 ///< of an EXR; else half

@@ -82,7 +82,10 @@ void checkCluster(const RenderOptions& o) {
     refuseInCluster(o.preview, "--preview is for one process");
 }
 
-void renderClip(RenderJob job, RenderSummary& summary) {
+/// Thrown if a render is interrupted before its first frame: then an older clip stays.
+struct NoFrames {};
+
+void renderClip(RenderJob job, RenderSummary& summary) try {
     const RenderOptions& o = job.options;
     const fs::path file = FramePattern(o.output).format(0);
     // Left behind by a process that was killed while writing.
@@ -96,8 +99,11 @@ void renderClip(RenderJob job, RenderSummary& summary) {
                                     .shownAsIs = !job.settings.pipeline.needsExposure()});
         job.clip = &clip;
         renderFrames(job, summary);
+        if (clip.isEmpty()) throw NoFrames();
         clip.finish();
     });
+} catch (const NoFrames&) {
+    // The report says so.
 }
 
 void render(const RenderOptions& o) {

@@ -1,4 +1,5 @@
 // `limpid render` with the path tracer and no denoiser: stills, and sequences whose frames are independent.
+#include "base/error.h"
 #include "base/files/file.h"
 #include "base/log.h"
 #include "cli/cluster/session.h"
@@ -18,9 +19,12 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds previewEvery{3};
 
-/// Where --preview writes.
-fs::path previewFile(fs::path output) {
-    return isExr(output) ? output.replace_extension(".preview.png") : output;
+/// A preview that cannot be written is no reason to lose the render.
+void writePreview(const fs::path& output, PictureFormat format, const FrameSums& sums) try {
+    format.layers.clear();
+    writePicture(previewFile(output), format, sums.means(), {});
+} catch (const OutputError& fault) {
+    log::warn("--preview: {}", fault.what());
 }
 
 }  // namespace
@@ -59,11 +63,9 @@ void writeSampled(const RenderJob& job, const AccumulationHeader& header, uint64
     if (writesSums(o)) {
         writeAccumulation(file, header, sums);
     } else {
-        auto metadata = metadataOf(header, frame, sums.samples(),
-                                   cameraText(job.sequence.camera(frame, job.settings.extent)));
-        if (const auto jitter = jitterOf(job.settings, frame, header.plan.samples))
-            metadata[jitterAttribute] = jitterText(*jitter);
-        writeFrame(job, frame, formatOf(header), sums.means(), metadata);
+        const std::string camera = cameraText(job.sequence.camera(frame, job.settings.extent));
+        writeFrame(job, frame, formatOf(header), sums.means(),
+                   metadataOf(header, frame, sums.samples(), camera));
     }
     if (o.dump.empty()) return;
     if (!renderer.hasLaunched()) return log::warn("nothing was rendered: there is nothing to dump");
@@ -93,9 +95,7 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
         writeSampled(job, render.header(), frame, sums, frames);
     };
     const auto preview = [&](const FrameSums& sums) {
-        PictureFormat format = formatOf(render.header());
-        format.layers.clear();
-        writePicture(previewFile(file(0)), format, sums.means(), {});
+        writePreview(file(0), formatOf(render.header()), sums);
     };
     summary.complete = render.run({.progress = [&](uint64_t samples) { progress.show(samples); },
                                    .finish = finish,

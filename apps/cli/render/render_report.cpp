@@ -61,6 +61,10 @@ void reportRender(const RenderOptions& o, const gpu::Device& device, const Rende
         static_cast<double>(s.counts.rays) * 1e-6 / std::max(s.timings.renderSeconds, 1e-9);
     if (!s.piecesByProcess.empty() && !o.json)
         log::info("{}", describePieces(s.piecesByProcess, s.frames > 1 ? "frames" : "blocks of samples"));
+    if (!o.json && s.frames > 1 && s.framesFinished == 0) {
+        log::info("wrote nothing to {}: no frame is finished", o.output);
+        return;
+    }
     if (!o.json) {
         const std::string frames = s.frames > 1 ? fmt::format("{} frames of ", s.framesFinished) : "";
         log::info("wrote {}: {}{} samples of {}x{} in {}, {:.2f} million rays per second, on {}", o.output,

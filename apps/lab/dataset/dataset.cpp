@@ -242,6 +242,14 @@ void makeFiles(const Dataset& dataset, const Shard& shard, gpu::Device& device, 
     if (isFirstProcess()) log::info("{}", describePieces(made, "files"));
 }
 
+/// They come last, perhaps after hours.
+void checkScenesExist(const std::vector<std::string>& scenes) {
+    for (const std::string& scene : scenes) {
+        if (scene.starts_with("builtin:")) continue;
+        if (const auto fault = irregularity(scene)) throw InputError(scene, *fault);
+    }
+}
+
 void run(const DatasetOptions& o) {
     const Shard shard = chosenShard(o.shard);
     refuseInCluster(shard.count > 1, "--shard: the processes of a cluster share out the work by themselves");
@@ -256,6 +264,7 @@ void run(const DatasetOptions& o) {
         throw UsageError("--picture-height goes with --sequence, and is at least --height");
     const Dataset dataset(o);
     if (dataset.examples() == 0) throw UsageError("choose at least one room, still life or scene");
+    checkScenesExist(o.scenes);
     makeFolder(o.folder);
     const OpenDevice device = openDevice(o.device);
     const scene::Tracer tracer = chosenTracer(o.device, *device);

@@ -26,7 +26,7 @@ CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& inpu
             .seed = settings.seed,
             .jitter = settings.jitter,
             .jitterSpan = input.jitterSpan,
-            .samplesBefore = settings.pipeline.accumulates() ? input.firstSample : 0,
+            .samplesBefore = input.raysBefore,
             .sampler = settings.pathtrace.sampler()};
 }
 

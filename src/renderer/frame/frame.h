@@ -21,6 +21,7 @@ struct FrameInput {
     bool hasPrevious = false;                    ///< there is a previous frame to compute motion from
     const scene::SceneFrame* moved = nullptr;    ///< what moved since the scene was last traced
     uint32_t firstSample = 0;                    ///< per pixel since the last reset, before this frame
+    uint64_t raysBefore = 0;                     ///< per pixel in this picture, before this frame
     uint32_t firstPoint = 0;                     ///< CameraLaunch::firstPoint
     float jitterSpan = 1.0f;                     ///< CameraLaunch::jitterSpan
     uint64_t stream = 0;                         ///< stream of random numbers; unique for each launch

@@ -108,6 +108,9 @@ void FrameRenderer::record(const LaunchSamples& taken) {
     if (samplesInMean_ == 0 && settings_.pipeline.accumulates())
         firstPoint_ = settings_.jitter == Jitter::Frame ? moment_.number * samples_ : 0;
     input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(firstPoint_ + taken.first, UINT32_MAX));
+    // Textures are filtered less the more rays share a pixel. Those of earlier frames, which the jitter's
+    // points count, do not; nor do those of a denoiser's history.
+    input.raysBefore = settings_.pipeline.accumulates() ? taken.first : 0;
     input.firstPoint = static_cast<uint32_t>(taken.point);
     input.jitterSpan = jitterSpanOf(taken.alone ? 1 : 2);
     input.stream = taken.stream;

@@ -22,6 +22,9 @@ Accumulation Checkpoint::load(const AccumulationHeader& ours) const {
     Accumulation loaded = readAccumulation(path_);
     if (const auto difference = firstDifference(loaded.header, ours))
         throw InputError(path_, "is the checkpoint of another render: " + *difference);
+    // A still is written anew as a whole, but the frames that a sequence has keep their look.
+    const auto look = ours.frames > 1 ? firstDifferenceOfLook(loaded.header, ours) : std::nullopt;
+    if (look) throw InputError(path_, "is the checkpoint of frames that look different: " + *look);
     const Shard theirs = loaded.header.shard;
     if (theirs != ours.shard) {
         throw InputError(path_, fmt::format("is the checkpoint of shard {}/{}, not {}/{}", theirs.index,

@@ -32,6 +32,14 @@ void addClip(Hash64& hash, const scene::Clip& clip) {
     }
 }
 
+/// Member by member, because there is padding between them.
+void addKey(Hash64& hash, const scene::CameraKey& key) {
+    hash.addValue(key.time);
+    for (const vec3& v : {key.eye, key.target, key.up}) hash.addValue(v);
+    for (const float v : {key.verticalFov, key.lensDiameter, key.focusDistance}) hash.addValue(v);
+    hash.addValue(uint32_t{key.cut});
+}
+
 }  // namespace
 
 std::string validUtf8(const std::string& text) {
@@ -73,6 +81,8 @@ uint64_t cameraHash(const Sequence& sequence, uint64_t frames, gpu::Extent exten
         const uint64_t frame = frames <= maxFrames ? i : i * (frames - 1) / (maxFrames - 1);
         hash.addValue(sequence.camera(frame, extent));
     }
+    if (sequence.path() && (sequence.isBlurred() || frames > maxFrames))
+        for (const scene::CameraKey& key : sequence.path()->keys()) addKey(hash, key);
     return hash.value();
 }
 
@@ -88,7 +98,7 @@ std::vector<std::pair<std::string, std::string>> identityOf(const RenderIdentity
         {"the first frame's time", fmt::format("{}", timing.start)},
         {"the shutter", toString(timing.shutter)},
         {seedEntry, fmt::format("{}", settings.seed)},
-        {"jitter", toString(settings.jitter)},
+        {jitterEntry, toString(settings.jitter)},
     };
     const PathtraceSettings traced = settings.pathsTraced();
     const ParamTable<PathtraceSettings>& table = pathtraceParams();

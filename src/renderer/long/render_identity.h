@@ -16,7 +16,8 @@ namespace limpid {
 /// animation that moves it. `data` was built from `scene`.
 uint64_t sceneHash(const scene::Scene& scene, const scene::SceneData& data);
 
-/// Hash of the cameras of all frames, or of a thousand evenly spaced ones if there are more.
+/// Hash of the cameras of all frames, or of a thousand evenly spaced ones if there are more; and of all keys
+/// of the camera's path if cameras between these times matter, too.
 uint64_t cameraHash(const Sequence& sequence, uint64_t frames, gpu::Extent extent);
 
 struct RenderIdentity {
@@ -31,6 +32,7 @@ struct RenderIdentity {
 inline constexpr const char* sceneEntry = "the scene";
 inline constexpr const char* cameraEntry = "the first camera";
 inline constexpr const char* seedEntry = "seed";
+inline constexpr const char* jitterEntry = "jitter";
 inline constexpr const char* versionEntry = "the version of Limpid";
 
 /// For AccumulationHeader::identity: scene, camera, timing, settings, tracer and version. It does

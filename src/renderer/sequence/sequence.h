@@ -39,6 +39,7 @@ class Sequence {
     /// frame's time. At a cut of the camera path, the shutter sees the frame's own shot only: instants beyond
     /// it are mirrored at the frame's time.
     Moment momentDuring(uint64_t frame, double instant, gpu::Extent extent) const;
+    const std::optional<scene::CameraPath>& path() const { return path_; }
     /// The camera alone, at the frame's time.
     CameraParams camera(uint64_t frame, gpu::Extent extent) const {
         return cameraAt(timing_.timeOf(frame), extent);

@@ -34,6 +34,7 @@ class CameraPath {
     Camera widest() const;
     /// True if a new shot began after `before`, up to and including `now`.
     bool cutBetween(double before, double now) const;
+    const std::vector<CameraKey>& keys() const { return keys_; }
     double duration() const { return keys_.back().time; }  ///< seconds
 
   private:

@@ -20,9 +20,8 @@ void checkBelongs(const fs::path& file, const Accumulation& added, const fs::pat
                   const Accumulation& sum) {
     if (const auto difference = firstDifference(added.header, sum.header))
         throw InputError(file, fmt::format("does not belong to {}: {}", first.string(), *difference));
-    if (added.header.floatColors != sum.header.floatColors || added.header.exposure != sum.header.exposure)
-        throw InputError(file,
-                         fmt::format("does not belong to {}: --float or --exposure differ", first.string()));
+    if (const auto difference = firstDifferenceOfLook(added.header, sum.header))
+        throw InputError(file, fmt::format("does not belong to {}: {}", first.string(), *difference));
     for (uint32_t block = 0; block < added.sums.blocks.size(); ++block) {
         if (added.sums.blocks[block] && sum.sums.blocks[block])
             throw InputError(file, fmt::format("has block {}, which is in an earlier file too", block));

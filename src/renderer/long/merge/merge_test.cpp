@@ -71,6 +71,10 @@ TEST_F(MergeTest, WhatDoesNotBelongIsNamed) {
     other.floatColors = true;
     EXPECT_THAT(faultOf({one, put("2", other, {1})}), testing::HasSubstr("--float"));
     other = headerOf(2, 2);
+    other.toneCurve = "agx";
+    EXPECT_THAT(faultOf({one, put("2", other, {1})}),
+                testing::HasSubstr("--tone-curve is agx, not standard"));
+    other = headerOf(2, 2);
     other.layers = {};
     EXPECT_THAT(faultOf({one, put("2", other, {1})}), testing::HasSubstr("layers"));
     EXPECT_THAT(faultOf({one, one}), testing::HasSubstr("block 0, which is in an earlier file"));

@@ -174,6 +174,13 @@ std::optional<std::string> firstDifference(const AccumulationHeader& theirs, con
     return std::nullopt;
 }
 
+std::optional<std::string> firstDifferenceOfLook(const AccumulationHeader& theirs,
+                                                 const AccumulationHeader& ours) {
+    if (const auto d = difference("--float", theirs.floatColors, ours.floatColors)) return d;
+    if (const auto d = difference("--exposure", theirs.exposure, ours.exposure)) return d;
+    return difference("--tone-curve", theirs.toneCurve, ours.toneCurve);
+}
+
 void warnOfOtherDevice(const std::filesystem::path& file, const AccumulationHeader& theirs,
                        const AccumulationHeader& ours) {
     if (theirs.device == ours.device && theirs.driver == ours.driver && theirs.tracer == ours.tracer) return;

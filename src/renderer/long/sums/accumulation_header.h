@@ -56,6 +56,10 @@ struct AccumulationHeader {
 /// if the samples of both may be mixed. Shard, frame, device and tracer are not compared.
 std::optional<std::string> firstDifference(const AccumulationHeader& theirs, const AccumulationHeader& ours);
 
+/// The first difference in how pictures are written, in the same words.
+std::optional<std::string> firstDifferenceOfLook(const AccumulationHeader& theirs,
+                                                 const AccumulationHeader& ours);
+
 /// Logs a warning if the file's samples come from another device, driver or tracer.
 void warnOfOtherDevice(const std::filesystem::path& file, const AccumulationHeader& theirs,
                        const AccumulationHeader& ours);
