@@ -19,7 +19,7 @@ TraversalRay traversalRay(vec3 origin, vec3 direction) {
     const vec3 tiny = vec3(1e-18);
     const vec3 safe = mix(direction, mix(tiny, -tiny, lessThan(direction, vec3(0.0))), lessThan(abs(direction), tiny));
     // In an instance's own space the direction may have any length, the fifth power of which would be in products.
-    const vec3 along = scaleToOne(maxAbs(direction)) * direction;
+    const vec3 along = TWO_LEVEL ? scaleToOne(maxAbs(direction)) * direction : direction;
     const vec3 acrossX = abs(along.x) > abs(along.z) ? vec3(-along.y, along.x, 0.0) : vec3(0.0, -along.z, along.y);
     const vec3 inverse = 1.0 / safe;
     const vec3 offset = -origin * inverse, padding = 3e-7 * abs(offset);

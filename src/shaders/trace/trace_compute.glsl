@@ -50,8 +50,8 @@ void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hi
     const float t = dot(v0, normal) / dot(normal, ray.direction);
     const float area = weight0 + weight1 + weight2;
     const vec2 barycentrics = vec2(weight1, weight2) / area;
-    // Written so that NaN, from a triangle without area or from numbers out of range, counts as a miss.
-    bool accepted = barycentrics.x + barycentrics.y < 2.0 && t > 0.0 && t < hit.t;
+    // Written so that NaN, from numbers out of range, counts as a miss: the sum is NaN if a weight is.
+    bool accepted = abs(area) > 0.0 && t > 0.0 && t < hit.t;
     if (HAS_ALPHA) {
         if (accepted && (floatBitsToUint(texel0.w) & BVH_TRIANGLE_ALPHA) != 0u) {
             accepted = passesAlphaTest(index, instance, barycentrics, rng);
