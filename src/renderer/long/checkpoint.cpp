@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/files/file.h"
+#include "base/log.h"
 
 namespace limpid {
 
@@ -44,7 +47,15 @@ void Checkpoint::save(const AccumulationHeader& header, const FrameSums& sums) {
 }
 
 void Checkpoint::saveIfDue(const AccumulationHeader& header, const FrameSums& sums) {
-    if (isDue()) save(header, sums);
+    if (!isDue()) return;
+    try {
+        save(header, sums);
+    } catch (const OutputError& fault) {
+        // A full disk may have room again, and the picture may lie on another one.
+        log::warn("{}; the render goes on, and tries again", fault.what());
+        saved_ = Clock::now();
+        cost_ = std::max<Clock::duration>(cost_, std::chrono::seconds(1));
+    }
 }
 
 bool Checkpoint::isDue() const {

@@ -24,7 +24,7 @@ class Checkpoint {
     void save(const AccumulationHeader& header, const FrameSums& sums);
     /// Whether writing now takes at most a twentieth of the time.
     bool isDue() const;
-    /// Writes the file if that is due.
+    /// Writes the file if that is due. If it cannot be written, warns, and keeps the file as it was.
     void saveIfDue(const AccumulationHeader& header, const FrameSums& sums);
 
   private:

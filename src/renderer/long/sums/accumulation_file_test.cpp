@@ -212,6 +212,20 @@ TEST_F(AccumulationFileTest, WhatIsNoFileIsNamed) {
     EXPECT_FALSE(fs::exists(folder_ / "b.sums"));
 }
 
+TEST_F(AccumulationFileTest, ACheckpointThatCannotBeWrittenDoesNotEndTheRender) {
+    const fs::path disk = folder_ / "disk";
+    fs::create_directory(disk);
+    Checkpoint checkpoint(disk / "a.ck");
+    fs::remove(disk);
+    const AccumulationHeader header = smallHeader();
+    EXPECT_NO_THROW(checkpoint.saveIfDue(header, randomSums(header, {0})));
+    EXPECT_FALSE(checkpoint.isDue()) << "it waits";
+    EXPECT_THROW(checkpoint.save(header, randomSums(header, {0})), OutputError) << "at the end it is needed";
+    fs::create_directory(disk);
+    checkpoint.save(header, randomSums(header, {0}));
+    EXPECT_TRUE(checkpoint.exists());
+}
+
 TEST_F(AccumulationFileTest, ACheckpointOfAnotherRenderIsRefusedWithWhatDiffers) {
     const AccumulationHeader saved = smallHeader();
     Checkpoint checkpoint(folder_ / "a.ck");
