@@ -15,7 +15,7 @@ _Method = Literal["svgf", "atrous", "temporal", "bilateral", "visibility"]
 _StillMethod = Literal["svgf", "atrous", "temporal", "bilateral", "visibility", "kpcn"]
 _ShotMethod = Literal["svgf", "atrous", "temporal", "bilateral", "kpcn"]
 _Output = Literal["color", "radiance", "specular"]
-_Path = str | PathLike[str]
+_Path = str | bytes | PathLike[str] | PathLike[bytes]
 
 class Error(RuntimeError):
     code: Literal["invalid_argument", "unsupported", "out_of_memory", "device_lost", "unreadable", "failed"]
@@ -216,6 +216,7 @@ def denoise_shot(
     bidirectional: bool = False,
     strength: float = 1.0,
     preserve: float = 0.0,
+    recover: str = "auto",
     resume: bool = False,
     exposure: float | Literal["auto"] = "auto",
     device: Device | str | int | None = None,

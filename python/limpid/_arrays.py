@@ -1,5 +1,7 @@
 """Checks and converts arguments before they reach the library. A ValueError names the argument that is wrong."""
 
+import os
+
 import numpy as np
 
 
@@ -52,6 +54,17 @@ def setting(value):
     if isinstance(value, (float, np.floating)) and float(value).is_integer() and abs(value) < 2**53:
         return str(int(value))  # "4.0" is no whole number there
     return str(value)
+
+
+def path(name, value):
+    """Returns the name of a file as bytes, since it need not be UTF-8; b"" for None."""
+    try:
+        encoded = b"" if value is None else os.fsencode(value)
+    except TypeError as error:
+        raise TypeError(f"{name}: {error}") from None
+    if b"\0" in encoded:
+        raise ValueError(f"{name}: {value!r} has zero bytes, but names of files have none")
+    return encoded
 
 
 def number(name, value, least, most):

@@ -9,12 +9,19 @@ def look_at(eye, target, up=(0.0, 1.0, 0.0)):
     """Returns the view matrix, (4, 4) float64, of a camera at `eye` that looks at `target`.
 
     View space is right-handed: x to the right, y up, and the camera looks along -z.
+
+    Raises ValueError if a number is not finite, if eye and target are the same point, or if up is along the view.
     """
-    eye, target, up = (np.asarray(v, np.float64) for v in (eye, target, up))
-    back = eye - target
-    right = np.cross(up, back)
-    if not np.any(right):
-        raise ValueError("look_at: eye and target are the same point, or up is along the view")
+    eye, target, up = (_point(name, v) for name, v in (("eye", eye), ("target", target), ("up", up)))
+    if np.array_equal(eye, target):
+        raise ValueError(f"look_at: eye and target are the same point, {eye.tolist()}")
+    if not up.any():
+        raise ValueError("look_at: up is 0 and has no direction")
+    back = _unit(eye - target)
+    right = np.cross(_unit(up), back)
+    # Rounding to single precision turns vectors by 1e-7: then the rest is no direction but an error.
+    if not np.linalg.norm(right) >= 1e-6:  # nor is NaN, where eye and target are too far apart
+        raise ValueError(f"look_at: up, {up.tolist()}, is along the view, so it does not say where the top is")
     return _view(eye, right, np.cross(back, right), -back)
 
 
@@ -37,6 +44,18 @@ def perspective(fov, aspect, near=0.1, far=math.inf, clip_y="down"):
         [0.0, 0.0, -share, -share * near],
         [0.0, 0.0, -1.0, 0.0],
     ])
+
+
+def _point(name, value):
+    array = np.asarray(value, np.float64)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise ValueError(f"{name}: needs three finite numbers, not {value!r}")
+    return array
+
+
+def _unit(vector):
+    vector = vector / np.abs(vector).max()  # the squares of very long and very short ones would have no room
+    return vector / np.linalg.norm(vector)
 
 
 def _view(eye, right, up, forward):

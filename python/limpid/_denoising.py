@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from limpid import _arrays, _camera, _denoise
-from limpid._devices import SharedDevices, handle_of, own
+from limpid._devices import SharedDevices, handle_of, own, watched
 
 # The accepted component counts of images that may have more components than are read.
 _COMPONENTS = {
@@ -168,7 +168,8 @@ class Denoiser:
                                 motion=motion_components, reflection_motion=motion_components)
         self._components["radiance"] = _radiance_components(method)
         self._camera = None  # of the previous frame
-        own(self, _denoise.Denoiser(handle_of(self._device), description))
+        with watched():
+            own(self, _denoise.Denoiser(handle_of(self._device), description))
         for name, value in (parameters or {}).items():
             self.set(name, value)
 
@@ -246,7 +247,8 @@ class Denoiser:
         numbers = [_arrays.choose("outputs", name, _denoise.OUTPUTS) for name in names]
         matrices, now = self._matrices(view, projection, previous_view, previous_projection)
         inputs, point = self._inputs(images, id), _point("jitter", jitter)
-        results = self._handle.denoise(inputs, numbers, matrices, point, bool(reset))
+        with watched():
+            results = self._handle.denoise(inputs, numbers, matrices, point, bool(reset))
         self._camera = now
         return results[0] if isinstance(outputs, str) else dict(zip(names, results))
 
@@ -277,10 +279,12 @@ class Denoiser:
         stacked = np.stack([view, projection, *previous]).transpose(0, 2, 1)
         return np.ascontiguousarray(stacked, np.float32), (view, projection)
 
+    @watched()
     def reset(self):
         """Discards the history, as after a cut: the next frame starts anew."""
         self._handle.reset()
 
+    @watched()
     def resize(self, width, height):
         """Sets the size of the following frames in pixels. Discards the history."""
         for name, value in (("width", width), ("height", height)):
@@ -291,16 +295,19 @@ class Denoiser:
         """Returns the parameters that set() accepts, as a dict of limpid.Parameter by name."""
         return parameters(self._method)
 
+    @watched()
     def set(self, name, value):
         """Sets a parameter from the next frame on. Raises limpid.Error if no parameter has this name, or if the value
         is outside its range or a fraction for an int or a bool."""
         self._handle.set(name, float(value))
 
+    @watched()
     def get(self, name):
         """Returns the value of a parameter, as bool, int or float."""
         value = self._handle.get(name)
         return parameter_value(self.parameters()[name].type, value)
 
+    @watched()
     def timings(self):
         """Returns a dict from the passes of the latest frame, in order, to their milliseconds on the device. Empty
         unless the denoiser was made with timings=True."""

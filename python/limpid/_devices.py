@@ -1,6 +1,7 @@
 """Devices that calls share, and what a forked process does with those of its parent."""
 
 import atexit
+import contextlib
 import ctypes
 import os
 import threading
@@ -53,18 +54,39 @@ def _after_fork(call):
 _after_fork(_let_go)
 
 
+_all_shared = []
+
+
+@contextlib.contextmanager
+def watched():
+    """Forgets all devices that calls share if the block, or the function that this decorates, loses one. Each next
+    call opens its device anew."""
+    try:
+        yield
+    except Error as error:
+        if error.code == "device_lost":
+            for devices in _all_shared:
+                devices.forget()
+        raise
+
+
 class SharedDevices:
     """Devices by the text that chose them. make(text) opens one."""
 
     def __init__(self, make):
         self._make = make
         self._clear()
+        _all_shared.append(self)
         # Drivers may be unloaded before the interpreter's last objects are destroyed.
         atexit.register(self._clear)
         _after_fork(self._clear)
 
     def _clear(self):
         self._made, self._lock = {}, threading.Lock()
+
+    def forget(self):
+        with self._lock:
+            self._made = {}
 
     def get(self, text):
         with self._lock:  # opening a device releases the GIL

@@ -1,7 +1,5 @@
 """Denoising of single frames with a trained network. Uses the extension module limpid._neural."""
 
-import os
-
 from limpid import _arrays
 from limpid._denoising import parameter_value, parameters_of, text_of
 from limpid._devices import own
@@ -35,14 +33,15 @@ class Network:
     parameters: a dict of names and values for set().
 
     Different threads may use different networks at the same time. Calls to one network wait for each other. The GIL is
-    released while the device works.
+    released while the device works. Ctrl+C ends denoise(), but the device still finishes that frame: the network waits
+    for it before it does anything else, and when it is deleted.
 
     Raises limpid.Error if no device fits or the weights cannot be read, ImportError if Limpid was built without its
     network.
     """
 
     def __init__(self, weights=None, *, device=None, parameters=None):
-        own(self, _module().Network(text_of(device), "" if weights is None else os.fspath(weights)))
+        own(self, _module().Network(text_of(device), _arrays.path("weights", weights)))
         for name, value in (parameters or {}).items():
             self.set(name, value)
 

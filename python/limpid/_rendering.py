@@ -4,7 +4,7 @@ import numpy as np
 
 from limpid import _arrays, _camera
 from limpid._denoising import text_of
-from limpid._devices import SharedDevices, handle_of, own
+from limpid._devices import SharedDevices, handle_of, own, watched
 
 try:
     from limpid import _renderer
@@ -127,17 +127,20 @@ class _Renderer:
             _arrays.number(name, value, least, most)
         if jitter is None:
             jitter = "" if denoiser else default_jitter
+        path = _arrays.path
         options = _module().Options(
-            scene=str(scene), width=width, height=height, samples=spp, seed=seed, denoiser=_text(denoiser),
+            scene=path("scene", scene), width=width, height=height, samples=spp, seed=seed, denoiser=_text(denoiser),
             assignments=[f"{name}={_arrays.setting(value)}" for name, value in (parameters or {}).items()],
-            environment=_text(environment), camera=_text(camera), eye=_vector("eye", eye),
+            environment=path("environment", environment), camera=_text(camera), eye=_vector("eye", eye),
             target=_vector("target", target), fov=0.0 if fov is None else float(fov), jitter=str(jitter),
-            weights=_text(weights), asset_root=_text(asset_root), fps=float(fps), frames=frames,
-            animation=_text(animation), camera_path=_text(camera_path))
-        own(self, _module().Renderer(handle_of(_devices.get(text_of(device))), options))
+            weights=path("weights", weights), asset_root=path("asset_root", asset_root), fps=float(fps), frames=frames,
+            animation=_text(animation), camera_path=path("camera_path", camera_path))
+        with watched():
+            own(self, _module().Renderer(handle_of(_devices.get(text_of(device))), options))
 
     def render(self, frame):
-        layers, camera = self._handle.render(frame)
+        with watched():
+            layers, camera = self._handle.render(frame)
         if "hit_distance" in layers:  # 1e10 in files means unknown, but a ray into the sky for denoise()
             layers["hit_distance"][layers["hit_distance"] >= 1e10] = 0.0
         layers["view"], layers["projection"] = _camera.matrices_of(camera)
@@ -149,7 +152,8 @@ def _text(value):
 
 
 def _vector(name, value):
-    array = np.asarray([] if value is None else value, np.float64)
-    if array.shape not in ((0,), (3,)):
-        raise ValueError(f"{name}: needs three numbers")
+    with np.errstate(over="ignore"):  # what is too large for the library's floats becomes infinite
+        array = np.asarray([] if value is None else value, np.float64).astype(np.float32)
+    if array.shape not in ((0,), (3,)) or not np.isfinite(array).all():
+        raise ValueError(f"{name}: needs three finite numbers, not {value!r}")
     return array.tolist()

@@ -1,7 +1,7 @@
 """Denoising of files of any renderer. Uses the extension module limpid._shot."""
 
+import contextlib
 import numbers
-import os
 import warnings
 
 from limpid import _arrays
@@ -20,23 +20,23 @@ def _module():
     return _shot
 
 
-def _path(value):
-    return "" if value is None else os.fspath(value)
-
-
 def _pairs(values):
     """{"albedo": "MyAlbedo.RGB"} as "albedo=MyAlbedo.RGB"."""
-    return [f"{name}={os.fspath(value) if isinstance(value, os.PathLike) else _arrays.setting(value)}"
+    return [f"{name}={_arrays.setting(value)}" for name, value in (values or {}).items()]
+
+
+def _path_pairs(values):
+    return [_arrays.path("files", name) + b"=" + _arrays.path(f"files[{name!r}]", value)
             for name, value in (values or {}).items()]
 
 
 def _inputs(input, map, map_file, files, cameras, fps, camera_start, motion, frames, **rest):
     options = _module().Options()
-    options.input = _path(input)
+    options.input = _arrays.path("input", input)
     options.map = _pairs(map)
-    options.map_file = _path(map_file)
-    options.files = _pairs(files)
-    options.cameras = _path(cameras)
+    options.map_file = _arrays.path("map_file", map_file)
+    options.files = _path_pairs(files)
+    options.cameras = _arrays.path("cameras", cameras)
     options.fps, options.camera_start = float(fps), int(camera_start)
     options.motion = motion or "none"
     if frames is not None:
@@ -59,8 +59,8 @@ def explain_shot(input, *, map=None, map_file=None, files=None, cameras=None, fp
 
 def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, weights=None, map=None, map_file=None,
                  files=None, cameras=None, fps=24.0, camera_start=0, motion="auto", frames=None, shard=None,
-                 cuts="auto", skip_unreadable=False, bidirectional=False, strength=1.0, preserve=0.0, resume=False,
-                 exposure="auto", device=None, progress=None):
+                 cuts="auto", skip_unreadable=False, bidirectional=False, strength=1.0, preserve=0.0,
+                 recover="auto", resume=False, exposure="auto", device=None, progress=None):
     """Denoises the frames of a shot of any renderer as `limpid denoise` does (docs/denoise-your-renders.md).
 
     input: path of a frame, or of all frames of a shot: "shot.%04d.exr". EXR, PFM, HDR or PNG.
@@ -83,6 +83,8 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     strength: share of the clean picture in the result, above 0 to 1.
     preserve: share of what was filtered away, in the mean over 5x5 pixels, that is given back, 0 to 1: more detail and
         more noise.
+    recover: "on" gives back what the filter took away besides noise, "off" does not; "auto": with SVGF, in files of
+        Cycles and pbrt-v4, without a preset.
     resume: goes on after the last complete output. Only for EXR.
     exposure: of a PNG: stops, or "auto".
     device: text or number that chooses a device as limpid.Device does, or a limpid.Device. In both cases the device is
@@ -91,7 +93,7 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
         the run, and is raised; what is written is complete.
 
     Returns a dict: "frames" (written), "kept" (found complete, with `resume`), "skipped", "cuts" (numbers of them) and
-    "seconds". What the command line would warn of becomes a UserWarning.
+    "seconds". What the command line would warn of becomes a UserWarning, also if the run fails.
 
     Raises limpid.Error: "invalid_argument" for a wrong option, "unreadable" for a file that cannot be read. The GIL is
     released while it works.
@@ -99,14 +101,21 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     if not 0.0 < strength <= 1.0:
         raise ValueError(f"strength: {strength!r} is not above 0 and at most 1")
     options = _inputs(input, map, map_file, files, cameras, fps, camera_start, motion, frames,
-                      output=_path(output), denoiser=denoiser or "", preset=preset or "",
-                      settings=_pairs(parameters), weights=_path(weights),
+                      output=_arrays.path("output", output), denoiser=denoiser or "", preset=preset or "",
+                      settings=_pairs(parameters), weights=_arrays.path("weights", weights),
                       shard="" if shard is None else f"{shard[0]:d}/{shard[1]:d}",
                       cuts=cuts if isinstance(cuts, str) else ",".join(f"{c:d}" for c in cuts) or "none",
                       on_error="skip" if skip_unreadable else "stop", strength=float(strength),
-                      preserve=float(preserve),
+                      preserve=float(preserve), recover=str(recover),
                       bidirectional=bool(bidirectional), resume=bool(resume), exposure=str(exposure))
-    summary = _module().denoise(options, text_of(device), progress)
-    for message in summary.pop("warnings"):
+    messages = []
+    try:
+        summary = _module().denoise(options, text_of(device), progress, messages)
+    except BaseException:  # Ctrl+C, too
+        for message in messages:
+            with contextlib.suppress(Exception):  # where warnings are errors: this failure says more
+                warnings.warn(message, stacklevel=2)
+        raise
+    for message in messages:
         warnings.warn(message, stacklevel=2)
     return summary

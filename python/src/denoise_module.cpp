@@ -12,11 +12,13 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "c_interface.h"
+#include "gil.h"
 #include "limpid/denoise.h"
 
 namespace py = pybind11;
@@ -64,18 +66,30 @@ class Device {
     }
 
     py::bytes pipelineCache() const {
-        size_t size = 0;
-        check(limpid_device_pipeline_cache(handle_.get(), nullptr, &size));
-        std::string data(size, '\0');
-        check(limpid_device_pipeline_cache(handle_.get(), data.data(), &size));
-        data.resize(size);
+        const std::string data = [&] {
+            const py::gil_scoped_release release;
+            return readPipelineCache();
+        }();
         return data;
     }
-    void loadPipelineCache(const std::string& data) {
+    void loadPipelineCache(std::string_view data) {
         check(limpid_device_load_pipeline_cache(handle_.get(), data.data(), data.size()));
     }
 
   private:
+    std::string readPipelineCache() const {
+        while (true) {
+            size_t size = 0;
+            check(limpid_device_pipeline_cache(handle_.get(), nullptr, &size));
+            std::string data(size, '\0');
+            const limpid_result result = limpid_device_pipeline_cache(handle_.get(), data.data(), &size);
+            // Another thread has made pipelines meanwhile, and they do not fit.
+            if (result == LIMPID_ERROR_INVALID_ARGUMENT) continue;
+            check(result);
+            data.resize(size);
+            return data;
+        }
+    }
     /// Called from any thread, with or without the GIL, so it must not use Python.
     void keep(const char* level, const char* text) {
         const std::lock_guard lock(mutex_);
@@ -296,13 +310,13 @@ PYBIND11_MODULE(_denoise, m) {
         .def("name", &Device::name)
         .def("messages", &Device::messages)
         .def("pipeline_cache", &Device::pipelineCache)
-        .def("load_pipeline_cache", &Device::loadPipelineCache);
+        .def("load_pipeline_cache", &Device::loadPipelineCache, Unlocked());
     py::class_<limpid_denoiser_desc>(m, "Description")
         .def(py::init(&describe), py::kw_only(), py::arg("method"), py::arg("width"), py::arg("height"),
              py::arg("signals"), py::arg("demodulated"), py::arg("normal_encoding"), py::arg("normal_space"),
              py::arg("depth_encoding"), py::arg("far_depth"), py::arg("motion_unit"),
              py::arg("motion_direction"), py::arg("motion_depth"), py::arg("clip_y"), py::arg("timings"));
-    py::class_<Denoiser>(m, "Denoiser")
+    py::class_<Denoiser, std::unique_ptr<Denoiser, DestroyUnlocked<Denoiser>>>(m, "Denoiser")
         .def(py::init<std::shared_ptr<Device>, const limpid_denoiser_desc&>(), Unlocked())
         .def("denoise", &Denoiser::denoise)
         .def("resize", &Denoiser::resize, Unlocked())

@@ -4,13 +4,22 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <future>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <string>
+#include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "c_interface.h"
+#include "gil.h"
 #include "limpid/neural.h"
 
 namespace py = pybind11;
@@ -23,6 +32,71 @@ using namespace limpid::python;
 /// thread.
 void check(limpid_result result) {
     if (result != LIMPID_OK) throw Failure(limpid_network_last_error(), result);
+}
+
+/// Does one task after another on a thread of its own. OpenMP, with which networks compute on CPUs, keeps a
+/// team of threads for each thread that uses it: a new thread for each task would start a new team.
+class Worker {
+  public:
+    ~Worker() {
+        {
+            const std::lock_guard lock(mutex_);
+            ends_ = true;
+        }
+        changed_.notify_one();
+        thread_.join();
+    }
+
+    std::future<void> start(std::packaged_task<void()> task) {
+        std::future<void> done = task.get_future();
+        {
+            const std::lock_guard lock(mutex_);
+            tasks_.push_back(std::move(task));
+        }
+        changed_.notify_one();
+        return done;
+    }
+
+  private:
+    void work() {
+        std::unique_lock lock(mutex_);
+        while (true) {
+            changed_.wait(lock, [this] { return ends_ || !tasks_.empty(); });
+            if (tasks_.empty()) return;
+            std::packaged_task<void()> task = std::move(tasks_.front());
+            tasks_.pop_front();
+            lock.unlock();
+            task();
+            lock.lock();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<std::packaged_task<void()>> tasks_;
+    bool ends_ = false;
+    std::thread thread_{[this] { work(); }};  ///< the last member, since it uses the others
+};
+
+/// A frame that another thread computes, so that its caller can handle signals meanwhile.
+struct Run {
+    std::vector<std::pair<uint32_t, Array>> inputs;
+    Array result;
+    std::atomic<bool> wanted = true;
+    std::future<void> done;
+
+    bool isDone(std::chrono::milliseconds wait = {}) const {
+        return done.wait_for(wait) == std::future_status::ready;
+    }
+};
+
+/// Waits for the run, without the GIL. Throws what the handler of a signal, such as Ctrl+C, raises meanwhile.
+void await(const Run& run) {
+    const auto isDone = [&] {
+        const py::gil_scoped_release release;
+        return run.isDone(std::chrono::milliseconds(100));
+    };
+    while (!isDone()) handleSignals();
 }
 
 class Network {
@@ -38,17 +112,24 @@ class Network {
         check(limpid_network_create(&device, &desc, &network));
         handle_.reset(network);
     }
+    Network(const Network&) = delete;
+    Network& operator=(const Network&) = delete;
+    ~Network() {
+        const py::gil_scoped_release release;  // until the arrays of the runs are given back
+        worker_.reset();
+        handle_.reset();
+    }
 
     std::string deviceName() const { return limpid_network_device_name(handle_.get()); }
     std::string precision() {
-        const std::lock_guard lock(mutex_);
-        return limpid_network_precision(handle_.get());
+        return alone([&] { return std::string(limpid_network_precision(handle_.get())); });
     }
 
     /// `inputs`: limpid_network_input and a float array of (height, width, components). Returns (height,
-    /// width, 3).
+    /// width, 3). The C interface cannot give up a frame: where a signal ends the call, the worker goes on.
     Array denoise(uint32_t width, uint32_t height, uint32_t samples,
                   const std::vector<std::pair<uint32_t, Array>>& inputs) {
+        giveBack();
         limpid_network_frame frame{};
         frame.size = sizeof frame;
         frame.width = width;
@@ -61,29 +142,57 @@ class Network {
         }
         Array result({py::ssize_t{height}, py::ssize_t{width}, py::ssize_t{3}});
         frame.color = hostImage<limpid_host_output>(result.mutable_data(), result);
-        const py::gil_scoped_release release;
-        const std::lock_guard lock(mutex_);
-        check(limpid_network_denoise(handle_.get(), &frame));
+        auto run = std::make_unique<Run>();
+        run->inputs = inputs;
+        run->result = result;
+        run->done = worker_->start(std::packaged_task<void()>([this, frame, &wanted = run->wanted] {
+            const std::lock_guard lock(mutex_);
+            if (wanted) check(limpid_network_denoise(handle_.get(), &frame));
+        }));
+        try {
+            await(*run);
+        } catch (...) {
+            run->wanted = false;
+            abandoned_.push_back(std::move(run));
+            throw;
+        }
+        run->done.get();
         return result;
     }
 
     void set(const std::string& name, double value) {
-        const std::lock_guard lock(mutex_);
-        check(limpid_network_set(handle_.get(), name.c_str(), value));
+        alone([&] { check(limpid_network_set(handle_.get(), name.c_str(), value)); });
     }
     double get(const std::string& name) {
-        const std::lock_guard lock(mutex_);
-        double value = 0.0;
-        check(limpid_network_get(handle_.get(), name.c_str(), &value));
-        return value;
+        return alone([&] {
+            double value = 0.0;
+            check(limpid_network_get(handle_.get(), name.c_str(), &value));
+            return value;
+        });
     }
 
   private:
+    /// Gives the arrays of finished frames back that nobody waited for. Needs the GIL, as they are Python's.
+    void giveBack() {
+        std::erase_if(abandoned_, [](const auto& run) { return run->isDone(); });
+    }
+
+    /// Calls `use` without the GIL while no frame is computed.
+    template <typename Use>
+    std::invoke_result_t<const Use&> alone(const Use& use) {
+        giveBack();
+        const py::gil_scoped_release release;
+        const std::lock_guard lock(mutex_);
+        return use();
+    }
+
     struct Destroy {
         void operator()(limpid_network* network) const { limpid_network_destroy(network); }
     };
     std::mutex mutex_;  ///< one thread at a time may use a network
     std::unique_ptr<limpid_network, Destroy> handle_;
+    std::vector<std::unique_ptr<Run>> abandoned_;  ///< the worker may still compute them
+    std::unique_ptr<Worker> worker_ = std::make_unique<Worker>();
 };
 
 py::dict inputs() {
@@ -114,8 +223,8 @@ PYBIND11_MODULE(_neural, m) {
     py::class_<Network>(m, "Network")
         .def(py::init<const std::string&, const std::string&>(), Unlocked())
         .def("device_name", &Network::deviceName)
-        .def("precision", &Network::precision, Unlocked())
+        .def("precision", &Network::precision)
         .def("denoise", &Network::denoise)
-        .def("set", &Network::set, Unlocked())
-        .def("get", &Network::get, Unlocked());
+        .def("set", &Network::set)
+        .def("get", &Network::get);
 }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "gil.h"
 #include "gpu/vulkan/device.h"
 #include "image/metrics/metrics.h"
 #include "image/tonemap.h"
@@ -53,9 +54,9 @@ image::Image imageOf(const Array& array) {
 }
 
 py::dict compare(const Array& test, const Array& reference, std::optional<float> stops) {
-    const image::Image a = imageOf(test), b = imageOf(reference);
     const image::Comparison result = [&] {
         const py::gil_scoped_release release;
+        const image::Image a = imageOf(test), b = imageOf(reference);
         return image::compare(a, b, stops ? *stops : image::autoExposure(b));
     }();
     py::dict dict;
@@ -90,32 +91,39 @@ constexpr Layer colors[] = {{"color", "", "RGB"},
                             {"id", "id", "I"}};
 constexpr const char* varianceOf[] = {"diffuse", "specular", "albedo", "normal", "depth"};
 
-/// Returns (height, width) for one component, (height, width, n) for several.
-py::array_t<float> arrayOf(const image::Image& picture) {
-    std::vector<py::ssize_t> shape{py::ssize_t{picture.height}, py::ssize_t{picture.width}};
-    if (picture.components > 1) shape.push_back(py::ssize_t{picture.components});
-    py::array_t<float> array(shape);
-    std::copy(picture.pixels.begin(), picture.pixels.end(), array.mutable_data());
-    return array;
-}
+using Pictures = std::vector<std::pair<std::string, image::Image>>;
 
-py::dict arraysOf(const image::LayeredImage& layers) {
-    py::dict dict;
+/// The layers by their names in Python. Copies all pixels, so call it without the GIL.
+Pictures picturesOf(const image::LayeredImage& layers) {
+    Pictures pictures;
     for (const auto& [name, layer, suffixes] : colors) {
         const std::string channel =
             std::string(layer) + (layer[0] == '\0' ? "" : ".") + std::string(1, suffixes[0]);
-        if (!layers.find(channel)) continue;
-        const py::array_t<float> array = arrayOf(layers.get(layer, suffixes));
-        dict[name] = array;
+        if (layers.find(channel)) pictures.emplace_back(name, layers.get(layer, suffixes));
     }
+    for (const std::string name : varianceOf) {
+        if (layers.find(name + ".variance.V"))
+            pictures.emplace_back(name + "_variance", layers.get(name + ".variance", "V"));
+    }
+    return pictures;
+}
+
+/// Returns (height, width) for one component, (height, width, n) for several. Takes the pixels over.
+py::array_t<float> arrayOf(image::Image&& picture) {
+    std::vector<py::ssize_t> shape{py::ssize_t{picture.height}, py::ssize_t{picture.width}};
+    if (picture.components > 1) shape.push_back(py::ssize_t{picture.components});
+    using Pixels = std::vector<float>;
+    auto pixels = std::make_unique<Pixels>(std::move(picture.pixels));
+    const float* const data = pixels->data();
+    const py::capsule owner(pixels.get(), [](void* taken) { delete static_cast<Pixels*>(taken); });
+    static_cast<void>(pixels.release());  // the capsule has it now
+    return py::array_t<float>(shape, data, owner);
+}
+
+py::dict arraysOf(Pictures&& pictures) {
+    py::dict dict;
+    for (auto& [name, picture] : pictures) dict[name.c_str()] = arrayOf(std::move(picture));
     if (dict.contains("id")) dict["id"] = dict["id"].attr("astype")("uint32");
-    for (const char* name : varianceOf) {
-        const image::Channel* channel = layers.find(std::string(name) + ".variance.V");
-        if (!channel) continue;
-        image::Image picture(layers.width, layers.height, 1);
-        picture.pixels = channel->values;
-        dict[(std::string(name) + "_variance").c_str()] = arrayOf(picture);
-    }
     return dict;
 }
 
@@ -141,28 +149,21 @@ class SignalCheck {
         if (now < next_) return;
         next_ = now + std::chrono::milliseconds(100);
         const py::gil_scoped_acquire acquire;
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        handleSignals();
     }
 
   private:
     std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now();
 };
 
-/// Destroys a renderer without the GIL: it may have to wait for another one that uses the device.
-struct DestroyUnlocked {
-    void operator()(SceneRenderer* renderer) const {
-        const py::gil_scoped_release release;
-        delete renderer;
-    }
-};
-
 /// Returns the layers of a frame by name, and its camera.
 py::tuple render(SceneRenderer& renderer, uint64_t frame) {
-    const auto [layers, camera] = [&] {
+    auto [pictures, camera] = [&] {
         const py::gil_scoped_release release;
-        return renderer.render(frame, SignalCheck());
+        const auto [layers, seenFrom] = renderer.render(frame, SignalCheck());
+        return std::pair(picturesOf(layers), seenFrom);
     }();
-    return py::make_tuple(arraysOf(layers), cameraDict(camera));
+    return py::make_tuple(arraysOf(std::move(pictures)), cameraDict(camera));
 }
 
 std::vector<std::pair<std::string, std::string>> builtinScenes() {
@@ -211,7 +212,7 @@ PYBIND11_MODULE(_renderer, m) {
     py::class_<RenderDevice, std::shared_ptr<RenderDevice>>(m, "Device")
         .def(py::init<const std::string&>(), Unlocked());
     py::class_<RenderOptions>(m, "Options").def(py::init(&optionsOf));
-    py::class_<SceneRenderer, std::unique_ptr<SceneRenderer, DestroyUnlocked>>(m, "Renderer")
+    py::class_<SceneRenderer, std::unique_ptr<SceneRenderer, DestroyUnlocked<SceneRenderer>>>(m, "Renderer")
         .def(py::init<std::shared_ptr<RenderDevice>, const RenderOptions&>(), Unlocked())
         .def("render", render);
 }

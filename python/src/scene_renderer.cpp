@@ -90,6 +90,11 @@ SceneRenderer::~SceneRenderer() {
 }
 
 RenderedLayers SceneRenderer::renderLayers(Moment moment, const std::function<void()>& between) {
+    // A frame with a denoiser is a single launch, which takes minutes on a CPU.
+    renderer_->graph().setInterruption([between] {
+        between();
+        return false;
+    });
     if (settings_.pipeline.accumulates()) {
         // Frames may come in any order, so each has a mean of its own.
         renderer_->begin(std::move(moment));

@@ -52,7 +52,8 @@ class SceneRenderer {
     ~SceneRenderer();
 
     /// Renders a frame and returns all its layers and the camera. With a denoiser, frames must be rendered in
-    /// order. `between` is called between launches; what it throws ends the frame.
+    /// order. `between` is called between launches, and on CPUs within them. What it throws ends the frame;
+    /// then only the destructor may be called.
     std::pair<image::LayeredImage, CameraParams> render(uint64_t frame, const std::function<void()>& between);
 
   private:

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "c_interface.h"
+#include "gil.h"
 #include "limpid/shot.h"
+#include "python_error.h"
 
 namespace py = pybind11;
 
@@ -36,10 +38,10 @@ class TextList {
     std::vector<const char*> pointers_;
 };
 
-/// The options as attributes of a Python object: texts, lists of texts, numbers.
+/// The options as attributes of a Python object: texts, lists of texts, numbers. Texts may be set to bytes.
 struct Options {
     std::string input, output, denoiser, preset, weights, mapFile, cameras, frames, shard, cuts, onError,
-        exposure;
+        exposure, recover;
     std::vector<std::string> settings, map, files;
     std::string motion;
     float strength = 1.0f, preserve = 0.0f, fps = 0.0f;
@@ -74,6 +76,7 @@ void withDesc(const Options& o, const Use& use) {
     desc.exposure = text(o.exposure);
     desc.strength = o.strength;
     desc.preserve = o.preserve;
+    desc.recover = text(o.recover);
     desc.bidirectional = o.bidirectional;
     desc.resume = o.resume;
     use(desc);
@@ -90,7 +93,7 @@ struct Run {
         Run& run = *static_cast<Run*>(user);
         const py::gil_scoped_acquire acquire;
         try {
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            handleSignals();
             if (!run.progress.is_none()) run.progress(done, total);
             return 0;
         } catch (...) {
@@ -106,8 +109,9 @@ struct Run {
     }
 };
 
-/// Returns the summary as a dict, with the list "warnings".
-py::dict denoise(const Options& options, const std::string& select, const py::object& progress) {
+/// Returns the summary as a dict. Appends to `warnings`, also if the shot fails.
+py::dict denoise(const Options& options, const std::string& select, const py::object& progress,
+                 py::list warnings) {
     Run run;
     run.progress = progress;
     limpid_device_desc device{};
@@ -117,12 +121,15 @@ py::dict denoise(const Options& options, const std::string& select, const py::ob
     device.message_user = &run;
     limpid_shot_summary summary{};
     summary.size = sizeof summary;
+    limpid_result done = LIMPID_OK;
     withDesc(options, [&](limpid_shot_desc& desc) {
         desc.progress = Run::onProgress;
         desc.progress_user = &run;
         const py::gil_scoped_release release;
-        check(limpid_shot_denoise(&device, &desc, &summary));
+        done = limpid_shot_denoise(&device, &desc, &summary);
     });
+    for (const std::string& text : run.warnings) warnings.append(textOf(text));
+    check(done);
     if (run.thrown) std::rethrow_exception(std::exchange(run.thrown, nullptr));
     py::dict result;
     result["frames"] = summary.frames;
@@ -130,18 +137,17 @@ py::dict denoise(const Options& options, const std::string& select, const py::ob
     result["skipped"] = summary.skipped;
     result["cuts"] = summary.cuts;
     result["seconds"] = summary.seconds;
-    result["warnings"] = run.warnings;
     return result;
 }
 
-std::string explain(const Options& options) {
+py::str explain(const Options& options) {
     std::string lines;
     withDesc(options, [&](const limpid_shot_desc& desc) {
         const py::gil_scoped_release release;
         check(limpid_shot_explain(
             &desc, [](void* user, const char* text) { *static_cast<std::string*>(user) = text; }, &lines));
     });
-    return lines;
+    return textOf(lines);
 }
 
 }  // namespace
@@ -170,6 +176,7 @@ PYBIND11_MODULE(_shot, m) {
         .def_readwrite("files", &Options::files)
         .def_readwrite("strength", &Options::strength)
         .def_readwrite("preserve", &Options::preserve)
+        .def_readwrite("recover", &Options::recover)
         .def_readwrite("bidirectional", &Options::bidirectional)
         .def_readwrite("resume", &Options::resume);
     m.def("denoise", &denoise);

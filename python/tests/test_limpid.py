@@ -3,12 +3,14 @@ LIMPID_TEST_DEVICE names the device (default: cpu)."""
 
 import gc
 import os
+import pathlib
 import signal
 import subprocess
 import sys
 import threading
 import time
 import unittest
+from unittest import mock
 
 import numpy as np
 
@@ -97,6 +99,23 @@ class DeviceTest(unittest.TestCase):
         for thread in threads:
             thread.join()
         self.assertEqual((made, len(set(found)), len(found)), (["cpu"], 1, 3))
+
+    def test_a_lost_device_is_opened_anew(self):
+        both = [_devices.SharedDevices(lambda text: object()) for _ in range(2)]
+        lost = [devices.get("cpu") for devices in both]
+        for code, same in (("failed", True), ("device_lost", False)):
+            with self.assertRaises(limpid.Error), _devices.watched():
+                raise limpid.Error("no more", code)
+            self.assertEqual([devices.get("cpu") is old for devices, old in zip(both, lost)], [same, same], code)
+
+    def test_every_call_of_a_denoiser_may_lose_its_device(self):
+        denoiser, devices = limpid.Denoiser(8, 8, device=device()), _devices.SharedDevices(lambda text: object())
+        denoiser._handle = mock.Mock()
+        for name, arguments in (("resize", (4, 4)), ("reset", ()), ("set", ("svgf.alpha", 0.5)), ("timings", ())):
+            getattr(denoiser._handle, name).side_effect = limpid.Error("no more", "device_lost")
+            lost = devices.get("cpu")
+            self.assertRaises(limpid.Error, getattr(denoiser, name), *arguments)
+            self.assertIsNot(devices.get("cpu"), lost, name)
 
     def test_other_modules_open_the_device_that_was_chosen(self):
         # By its name they would open the first of several that are alike.
@@ -213,6 +232,13 @@ class ShapeTest(unittest.TestCase):
             copied = _arrays.image("depth", array, (1,))
             self.assertTrue(copied.flags.c_contiguous)
             np.testing.assert_array_equal(copied[..., 0], array)
+
+    def test_names_of_files_are_those_of_the_system(self):
+        for name in b"\xff.exr", os.fsdecode(b"\xff.exr"), pathlib.Path(os.fsdecode(b"\xff.exr")):
+            self.assertEqual(_arrays.path("scene", name), b"\xff.exr")
+        self.assertEqual(_arrays.path("scene", None), b"")
+        self.assertRaisesRegex(TypeError, "^scene: ", _arrays.path, "scene", 7)
+        self.assertRaisesRegex(ValueError, "^scene: ", _arrays.path, "scene", "a\0b")
 
     def test_one_pixel_and_odd_sizes(self):
         for height, width in ((1, 1), (1, 7), (5, 1), (3, 13)):

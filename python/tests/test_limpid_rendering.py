@@ -2,15 +2,43 @@
 names the device (default: cpu)."""
 
 import os
+import shutil
 import signal
+import subprocess
+import sys
+import tempfile
 import threading
 import time
 import unittest
+import weakref
 
 import numpy as np
 
 import limpid
 from fixture import device, mse
+
+
+WEIGHTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "weights", "kpcn.safetensors")
+
+
+class Stop(Exception):
+    """Raised by a signal's handler, as KeyboardInterrupt is by Ctrl+C."""
+
+
+def stop_after(test, seconds):
+    """Raises Stop in the main thread after so many seconds."""
+    def stop(number, frame):
+        raise Stop
+
+    test.addCleanup(signal.signal, signal.SIGALRM, signal.signal(signal.SIGALRM, stop))
+    test.addCleanup(signal.setitimer, signal.ITIMER_REAL, 0)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+
+
+def seconds_of(call):
+    began = time.monotonic()
+    call()
+    return time.monotonic() - began
 
 
 class NetworkTest(unittest.TestCase):
@@ -35,9 +63,52 @@ class NetworkTest(unittest.TestCase):
     def test_is_what_render_does_itself(self):
         clean = self.network.denoise(**self.inputs)
         self.assertEqual((clean.shape, clean.dtype), ((16, 24, 3), np.float32))
-        weights = os.path.join(os.path.dirname(__file__), "..", "..", "weights", "kpcn.safetensors")
-        own = limpid.render("builtin:cornell", 24, 16, spp=16, device=device(), denoiser="kpcn", weights=weights)
-        np.testing.assert_allclose(clean, own["color"], rtol=2e-3, atol=1e-4)
+        for weights in WEIGHTS, None:
+            own = limpid.render("builtin:cornell", 24, 16, spp=16, device=device(), denoiser="kpcn", weights=weights)
+            np.testing.assert_allclose(clean, own["color"], rtol=2e-3, atol=1e-4)
+
+    def test_weights_of_the_packages_own_prefix_are_found(self):
+        with tempfile.TemporaryDirectory() as prefix:
+            packages, share = (os.path.join(prefix, *path.split("/")) for path in ("lib/python3/site", "share/limpid"))
+            shutil.copytree(os.path.dirname(limpid.__file__), os.path.join(packages, "limpid"))
+            os.makedirs(share)
+            os.symlink(os.path.realpath(WEIGHTS), os.path.join(share, "kpcn.safetensors"))
+            code = f"limpid.render('builtin:cornell', 8, 8, spp=8, denoiser='kpcn', device={self.DEVICE!r})"
+            paths = os.pathsep.join([packages, os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep)
+            subprocess.run([sys.executable, "-c", "import limpid; " + code], check=True, cwd=prefix,
+                           env=dict(os.environ, PYTHONPATH=paths))
+
+    @unittest.skipUnless(DEVICE == "cpu", "the frames of GPUs are too short")
+    def test_signals_are_handled_meanwhile(self):
+        side, whole = 64, 0.0
+        while whole < 1.0:
+            white = np.ones((side, side, 3), np.float32)
+            inputs = {"diffuse": white, "normal": white, "depth": white[..., 0], "diffuse_variance": white[..., 0]}
+            expected = self.network.denoise(**inputs)  # the first frame of a size takes longer
+            whole = seconds_of(lambda: self.network.denoise(**inputs))
+            side = int(side * min(max((1.2 / whole) ** 0.5, 1.2), 4.0))
+        stop_after(self, 0.05)
+        began = time.monotonic()
+        with self.assertRaises(Stop):
+            self.network.denoise(**inputs)
+        self.assertLess(time.monotonic() - began, 0.5 * whole)
+        np.testing.assert_array_equal(self.network.denoise(**inputs), expected)
+
+    @unittest.skipUnless(DEVICE == "cpu", "the frames of GPUs are too short")
+    def test_what_a_signal_left_is_given_back(self):
+        white = np.ones((128, 128, 3), np.float32)
+        depth, given_back = np.ones((128, 128), np.float32), threading.Event()
+        weakref.finalize(depth, given_back.set)
+        stop_after(self, 0.01)
+        with self.assertRaises(Stop):
+            for _ in range(1000):
+                self.network.denoise(white, white, depth, diffuse_variance=white[..., 0])
+        del depth
+        for _ in range(100):
+            self.network.get("kpcn.tile")  # waits for the frame
+            if given_back.wait(0.01):
+                return
+        self.fail("the array is kept")
 
     def test_denoise_has_it_as_a_method(self):
         inputs = dict(self.inputs)
@@ -82,8 +153,20 @@ class CameraTest(unittest.TestCase):
         view = limpid.look_at((1, 2, 3), (1, 2, -1))
         np.testing.assert_allclose(view @ (1, 2, 3, 1), (0, 0, 0, 1), atol=1e-12)
         np.testing.assert_allclose(view @ (2, 3, -1, 1), (1, 1, -4, 1), atol=1e-12)
-        with self.assertRaises(ValueError):
-            limpid.look_at((0, 0, 0), (0, 1, 0))
+
+    def test_look_at_refuses_what_is_no_view(self):
+        aslant = np.array((0.1, 0.7, 0.3), np.float32)
+        for arguments, text in ((((1, 2, 3), (1, 2, 3)), "the same point"), (((0, 0, 0), (0, 1, 0)), "along the view"),
+                                ((aslant, 3 * aslant, 7 * aslant), "along the view"),
+                                (((0, 0, 0), (0, 0, 1), (0, 0, 0)), "up is 0"),
+                                (((np.nan, 0, 0), (0, 0, 1)), "eye: needs three finite numbers"),
+                                (((0, 0, 0), (0, 0, np.inf)), "target: needs"),
+                                (((0, 0, 0), (0, 0, 1), (0, np.nan, 0)), "up: needs"),
+                                (((0, 0), (0, 1)), "eye: needs"),
+                                (((1e308, 0, 0), (-1e308, 0, 0)), "along the view")):
+            with self.assertRaisesRegex(ValueError, text), np.errstate(all="ignore"):
+                limpid.look_at(*arguments)
+        np.testing.assert_allclose(limpid.look_at((0, 0, 0), (0, 0, -1e200)), np.eye(4), atol=1e-12)
 
     def test_perspective_is_vulkans(self):
         for far in (100.0, np.inf):
@@ -138,10 +221,11 @@ class RenderTest(unittest.TestCase):
 
     def test_layers_have_their_keys_shapes_and_types(self):
         layers = self.render()
+        self.assertTrue(layers["color"].flags.writeable)
         three = {"color", "diffuse", "specular", "emission", "albedo", "albedo_specular", "normal", "previous_normal",
                  "motion", "reflection_motion"}
-        one = {"depth", "id", "roughness", "hit_distance", "diffuse_variance", "specular_variance", "albedo_variance", "normal_variance",
-               "depth_variance"}
+        one = {"depth", "id", "roughness", "hit_distance", "diffuse_variance", "specular_variance", "albedo_variance",
+               "normal_variance", "depth_variance"}
         self.assertEqual(set(layers), three | one | {"view", "projection"})
         for name, value in layers.items():
             shape = (4, 4) if name in ("view", "projection") else (32, 32, 3) if name in three else (32, 32)
@@ -191,7 +275,9 @@ class RenderTest(unittest.TestCase):
         with self.assertRaises(limpid.Error) as caught:
             limpid.render("no-such-file.glb", 8, 8, device=device())
         self.assertIn("no-such-file.glb", str(caught.exception))
-        for name, value in ("spp", 0), ("spp", 1.5), ("seed", -1), ("seed", 2**32), ("seed", "1"):
+        for name, value in (("spp", 0), ("spp", 1.5), ("seed", -1), ("seed", 2**32), ("seed", "1"),
+                            ("eye", (np.nan, 0, 0)), ("target", (0, 0)), ("target", (1e39, 0, 0)),
+                            ("environment", "a\0b")):
             with self.subTest(name, value=value), self.assertRaises(ValueError) as caught:
                 self.render(**{name: value})
             self.assertTrue(str(caught.exception).startswith(name + ":"), str(caught.exception))
@@ -215,17 +301,39 @@ class RenderTest(unittest.TestCase):
         self.assertGreater(after["psnr"], before["psnr"] + 6, (before, after))
         self.assertLess(after["flip"], before["flip"])
 
+    def test_names_of_scenes_need_not_be_utf_8(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = os.path.join(os.fsencode(folder), b"\xff.obj")
+            with open(scene, "w") as file:
+                file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+            for name in scene, os.fsdecode(scene):
+                self.assertEqual(limpid.render(name, 4, 4, spp=1, device=device())["id"].max(), 1)
+        with self.assertRaisesRegex(limpid.Error, r"\\xff\.obj"):
+            limpid.render(scene, 4, 4, device=device())
+
     def test_signals_are_handled_meanwhile(self):
-        class Stop(Exception):
-            pass
-
-        def stop(number, frame):
-            raise Stop
-
-        self.addCleanup(signal.signal, signal.SIGALRM, signal.signal(signal.SIGALRM, stop))
-        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        stop_after(self, 0.2)
         with self.assertRaises(Stop):
             self.render(spp=1 << 24)  # takes minutes
+
+    @unittest.skipUnless(NetworkTest.DEVICE == "cpu", "the frames of GPUs are too short")
+    def test_signals_are_handled_within_a_frame(self):
+        def frames(spp):
+            return limpid.render_sequence("builtin:cornell", 32, 32, frames=1, spp=spp, denoiser="svgf",
+                                          device=device())
+
+        next(frames(1))  # compiles
+        spp, short = 64, 0.0
+        while short < 0.4 and spp < 16384:
+            spp *= 4
+            short = seconds_of(lambda frame=frames(spp): next(frame))
+        most = min(10 * spp, 65536)
+        frame, expected = frames(most), short * most / spp
+        stop_after(self, 0.2)
+        began = time.monotonic()
+        with self.assertRaises(Stop):
+            next(frame)
+        self.assertLess(time.monotonic() - began, 0.5 * expected)
 
     def test_other_threads_run_while_a_renderer_waits(self):
         # Renderers of a device take turns, and so do those that are no longer needed.

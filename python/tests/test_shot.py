@@ -2,6 +2,7 @@
 LIMPID_TEST_DEVICE names the device (default: cpu); LIMPID_PROGRAM is the program."""
 
 import os
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -95,6 +96,34 @@ class ShotTest(unittest.TestCase):
                                           skip_unreadable=True)
         self.assertEqual((summary["frames"], summary["skipped"]), (1, 1))
         self.assertTrue(any("e.0014.exr" in str(w.message) for w in caught), [str(w.message) for w in caught])
+
+    def damage_all(self):
+        """Writes two frames that are skipped, so that none is left. A single one would be an error at once."""
+        for frame in (self.first, self.last):
+            with open(self.path(f"e.{frame:04d}.exr"), "wb") as file:
+                file.write(contents(self.shot % frame)[:5000])
+
+    def test_warns_also_if_it_fails(self):
+        self.damage_all()
+        with self.assertWarnsRegex(UserWarning, "e.0014.exr"), self.assertRaises(limpid.Error):
+            limpid.denoise_shot(self.path("e.%04d.exr"), self.path("f.%04d.exr"), device=DEVICE, skip_unreadable=True)
+
+    def test_warnings_as_errors_do_not_replace_a_failure(self):
+        self.damage_all()
+        with warnings.catch_warnings(), self.assertRaises(limpid.Error):
+            warnings.simplefilter("error")
+            limpid.denoise_shot(self.path("e.%04d.exr"), self.path("f.%04d.exr"), device=DEVICE, skip_unreadable=True)
+
+    def test_names_of_files_need_not_be_utf_8(self):
+        folder = os.fsencode(self.folder)
+        source, output = os.path.join(folder, b"\xff.exr"), os.path.join(folder, b"\xfe.exr")
+        shutil.copyfile(self.shot % self.first, source)
+        self.assertIn("\\xff.exr", limpid.explain_shot(source))
+        for name in os.fsdecode, lambda file: file:
+            limpid.denoise_shot(name(source), name(output), device=DEVICE)
+            os.unlink(output)
+        with self.assertRaisesRegex(limpid.Error, r"no \\xff\.exr"):
+            limpid.denoise_shot(os.path.join(folder, b"no \xff.exr"), output, device=DEVICE)
 
 
 if __name__ == "__main__":

@@ -40,7 +40,8 @@ class StubTest(unittest.TestCase):
         self.assertEqual(set(self.stub), set(limpid.__all__))
 
     def test_functions_have_the_same_parameters(self):
-        for name in ("denoise", "denoise_shot", "explain_shot", "parameters", "compare", "builtin_scenes", "look_at", "perspective"):
+        for name in ("denoise", "denoise_shot", "explain_shot", "parameters", "compare", "builtin_scenes", "look_at",
+                     "perspective"):
             self.assertEqual(described(self.stub[name]), actual(getattr(limpid, name)), name)
 
     def test_methods_have_the_same_parameters(self):

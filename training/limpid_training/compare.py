@@ -48,7 +48,8 @@ def table(runs):
             goal = reached["losses"]["validation"][-1]
             epoch = first_below(run["losses"]["validation"], goal)
             when = f"epoch {epoch}, {run['times'][epoch - 1]:.0f} s" if epoch else "never"
-            yield (f"{name} reaches {other}'s {goal:.4f} (epoch {len(reached['times'])}, {reached['times'][-1]:.0f} s): {when}")
+            end = f"epoch {len(reached['times'])}, {reached['times'][-1]:.0f} s"
+            yield f"{name} reaches {other}'s {goal:.4f} ({end}): {when}"
 
 
 def main():

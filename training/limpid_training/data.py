@@ -24,7 +24,8 @@ class Dataset:
         if "sequence" in self.manifest["dataset"]:
             raise ValueError(f"{folder} has clips (limpid dataset --sequence), no stills")
         if samples not in self.manifest["dataset"]["samples"]:
-            raise ValueError(f"{folder} has pictures of {self.manifest['dataset']['samples']} samples, none of {samples}")
+            there = self.manifest["dataset"]["samples"]
+            raise ValueError(f"{folder} has pictures of {there} samples, none of {samples}")
         self.folder, self.device = folder, torch.device(device)
         self.examples = [
             (file["name"], example["name"], example["scene"])

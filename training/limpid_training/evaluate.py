@@ -6,11 +6,10 @@ Prints the relMSE (docs/metrics.md) of the noisy and of the denoised picture, an
 plus specular light, without emission."""
 
 import argparse
-import os
 
 import torch
 
-from . import data, features
+from . import checkpoint, data
 from .network import network_of
 
 
@@ -22,7 +21,7 @@ def rel_mse(image, reference):
 def evaluate(run, folder, device="cpu"):
     """Yields (scene, relMSE of the noisy picture, relMSE of the denoised picture) for every example of the data
     set."""
-    state = torch.load(os.path.join(run, "checkpoint.pt"), map_location=device)
+    state = checkpoint.load(run, device)
     options = state["options"]
     net = network_of(options).to(device)
     net.load_state_dict(state["net"])
@@ -41,7 +40,7 @@ def main():
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     chosen = parser.parse_args()
     ratios, known = [], 0
-    learnt = set(torch.load(os.path.join(chosen.run, "checkpoint.pt"), map_location="cpu").get("learnt", ()))
+    learnt = set(checkpoint.load(chosen.run).get("learnt", ()))
     print(f"{'scene':<32}{'noisy':>10}{'denoised':>10}{'ratio':>8}")
     for scene, noisy, denoised in evaluate(chosen.run, chosen.data, chosen.device):
         ratios.append(denoised / max(noisy, 1e-12))

@@ -7,15 +7,18 @@ network's shape and the parameters of the training."""
 
 import argparse
 import json
-import os
 
 import torch
 
-from . import features, tensor_file
+from . import checkpoint, features, tensor_file
+
+
+#: Options of a training that say nothing of the network.
+OF_THE_CALL = ("data", "output", "device", "resume", "overwrite")
 
 
 def export(run, output):
-    state = torch.load(os.path.join(run, "checkpoint.pt"), map_location="cpu")
+    state = checkpoint.load(run)
     options = state["options"]
     if options["direct"]:
         raise SystemExit(f"{run}: predicts colours; Limpid denoises with kernels")
@@ -26,15 +29,16 @@ def export(run, output):
     unseen = sorted(set(range(features.INPUT_CHANNELS)) - set(features.INPUTS[options["inputs"]]))
     for side in features.SIDES:
         weights[side + ".hidden.0.weight"][:, unseen] = 0.0  # inputs not used in training
+    shape = ("hidden", "channels", "width", "facing", "diffuse_input")
     metadata = {
         "limpid.network": "kpcn",
-        "limpid.shape": json.dumps({key: options[key] for key in ("hidden", "channels", "width", "facing", "diffuse_input")}),
+        "limpid.shape": json.dumps({key: options[key] for key in shape}),
         "limpid.training": json.dumps(
             {
                 "dataset": state["dataset"],
                 "epochs": state["epoch"],
                 "seconds": round(state["seconds"]),
-                "options": {key: value for key, value in options.items() if key not in ("data", "output", "device")},
+                "options": {key: value for key, value in options.items() if key not in OF_THE_CALL},
             }
         ),
     }

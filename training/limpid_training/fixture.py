@@ -40,7 +40,8 @@ def frame(rows, columns, generator):
     for band, (degrees, length) in enumerate([(53, 0.4), (109, 1.0), (117, 2.0), (233, 1.0)]):
         turned = torch.tensor([0.0, math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])[:, None, None]
         normal = torch.where(near & (x // 3 % 4 == band)[None, None], length * turned, normal)
-    layers = {"diffuse": albedo * (0.2 + random(3) ** 4), "specular": 3 * random(3) ** 8, "albedo": albedo, "normal": normal}
+    layers = {"diffuse": albedo * (0.2 + random(3) ** 4), "specular": 3 * random(3) ** 8}
+    layers.update(albedo=albedo, normal=normal)
     layers["depth"] = torch.where(near, 2.0 + 0.01 * x, 5.0 + 0.1 * y)
     for name in list(layers):
         layers[name] = torch.where(nothing, torch.zeros(1), layers[name])

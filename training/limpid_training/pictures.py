@@ -1,5 +1,6 @@
 """Writes PNG files and SVG plots, without further libraries."""
 
+import html
 import math
 import struct
 import zlib
@@ -65,7 +66,8 @@ def panel(left, width, height, title, across, curves):
         color = COLORS[k % len(COLORS)]
         line = " ".join("{:.1f},{:.1f}".format(*place(x, y)) for x, y in zip(xs, ys) if 0 < y < math.inf)
         parts.append(f'<polyline fill="none" stroke="{color}" stroke-width="1.5" points="{line}"/>')
-        parts.append(f'<text x="{left + 60 + inner / 2 * (k % 2)}" y="{36 + 14 * (k // 2)}" fill="{color}">{name}</text>')
+        x, y, label = left + 60 + inner / 2 * (k % 2), 36 + 14 * (k // 2), html.escape(name, quote=False)
+        parts.append(f'<text x="{x}" y="{y}" fill="{color}">{label}</text>')
     return parts
 
 
@@ -73,8 +75,9 @@ def write_plots(path, plots, width=460, height=340):
     """Writes an SVG file with `plots` side by side. Each plot is (title, label of the x axis, {name: (xs, ys)}). The
     background is white, so that the plots are readable on dark pages, too."""
     whole = width * len(plots)
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {whole} {height}" font-family="sans-serif" font-size="12">']
-    parts.append(f'<rect width="{whole}" height="{height}" fill="white"/>')
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {whole} {height}" font-family="sans-serif" '
+             'font-size="12">',
+             f'<rect width="{whole}" height="{height}" fill="white"/>']
     for i, (title, across, curves) in enumerate(plots):
         parts += panel(i * width, width, height, title, across, curves)
     with open(path, "w") as stream:

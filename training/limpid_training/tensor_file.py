@@ -2,6 +2,7 @@
 with the CRC-32 of all elements as metadata "crc32". src/neural/tensor_file.h does the same in C++."""
 
 import json
+import math
 import os
 import struct
 import tempfile
@@ -53,7 +54,8 @@ def write(path, tensors, metadata=None):
 
 
 def read(path):
-    """Returns the tensors by name, and the metadata. Raises ValueError if the file is damaged.
+    """Returns the tensors by name, and the metadata. Raises ValueError if the file is damaged, or if its elements are
+    of another type than F16 and F32.
 
     The file is mapped: processes that read the same file share its memory, and tensors that are never used are never
     loaded. Changes to a tensor are not written back."""
@@ -65,18 +67,25 @@ def read(path):
     (length,) = struct.unpack_from("<Q", content)
     if length > size - 8:
         raise ValueError(f"{path}: is cut off within its header")
-    header = json.loads(content[8 : 8 + length].tobytes())
+    try:
+        header = json.loads(content[8 : 8 + length].tobytes())
+    except ValueError as fault:
+        raise ValueError(f"{path}: its header is no JSON: {fault}") from None
     data = content[8 + length :]
     metadata = header.pop(_METADATA, {})
     if "crc32" in metadata and metadata["crc32"] != f"{zlib.crc32(data):08x}":
         raise ValueError(f"{path}: is damaged: its elements do not have the checksum that it states")
     tensors = {}
     for name, entry in header.items():
-        begin, end = entry["data_offsets"]
+        (begin, end), shape = entry["data_offsets"], entry["shape"]
+        if entry["dtype"] not in _TYPES:
+            known = " and ".join(_TYPES)
+            raise ValueError(f"{path}: '{name}' has elements of type {entry['dtype']}; {known} can be read")
         dtype = _TYPES[entry["dtype"]]
-        count = (end - begin) // torch.empty(0, dtype=dtype).element_size()
         if end > len(data):
             raise ValueError(f"{path}: is cut off within '{name}'")
-        flat = torch.from_numpy(data[begin:end]).view(dtype) if count else torch.empty(0, dtype=dtype)
-        tensors[name] = flat.reshape(entry["shape"])
+        if begin < 0 or end - begin != math.prod(shape) * torch.empty(0, dtype=dtype).element_size():
+            raise ValueError(f"{path}: '{name}': its shape does not fit its {end - begin} bytes")
+        flat = torch.from_numpy(data[begin:end]).view(dtype) if begin < end else torch.empty(0, dtype=dtype)
+        tensors[name] = flat.reshape(shape)
     return tensors, metadata

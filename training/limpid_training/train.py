@@ -7,8 +7,8 @@ The networks for diffuse and specular light are trained separately first, on the
 network space (features.to_network()). Then both are tuned together, on that of the picture. docs/kpcn.md, "Training",
 has the details.
 
-RUN receives checkpoint.pt (from which --resume continues), losses.json, losses.svg, and validation.png, which shows
-one held-out example: noisy, denoised, reference."""
+RUN receives checkpoint.pt (which --resume continues and --overwrite replaces), losses.json, losses.svg, and
+validation.png, which shows one held-out example: noisy, denoised, reference."""
 
 import argparse
 import contextlib
@@ -19,15 +19,16 @@ import time
 
 import torch
 
-from . import data, features, pictures
+from . import checkpoint, data, features, pictures
 from .evaluate import rel_mse
 from .network import ANY_FACING, FACING, network_of
 from .workers import Workers
 
 PRESETS = {
     "cis565": {
-        "loss": "absolute", "warm_up": 0, "logit_decay": 0, "batch": 16, "rate_diffuse": 1e-5, "rate_specular": 1e-4, "final_rate": 1.0, "epochs": 10, "tuning_epochs": 0,
-        "inputs": "gradients", "diffuse_input": "linear", "facing": ANY_FACING}
+        "loss": "absolute", "warm_up": 0, "logit_decay": 0, "batch": 16, "rate_diffuse": 1e-5, "rate_specular": 1e-4,
+        "final_rate": 1.0, "epochs": 10, "tuning_epochs": 0, "inputs": "gradients", "diffuse_input": "linear",
+        "facing": ANY_FACING}
 }
 
 #: With other values of these, a checkpoint would be of another network or for other pictures.
@@ -75,13 +76,17 @@ def parse(arguments=None):
                         help="minimum cosine between a pixel's normal and those of the pixels in its kernel; "
                         "-2: no condition")
     parser.add_argument("--direct", action="store_true",
-                        help="predict colours instead of kernels, to compare the two; such a network cannot be exported")
+                        help="predict colours instead of kernels, to compare the two; such a network cannot be "
+                        "exported")
     parser.add_argument("--validation", type=float, default=0.1,
                         help="fraction of the examples that is held out for validation")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--time-limit", type=float, default=0,
                         help="do not begin another epoch after this many seconds; 0: no limit")
-    parser.add_argument("--resume", action="store_true", help="continue from the checkpoint in the output folder")
+    existing = parser.add_mutually_exclusive_group()
+    existing.add_argument("--resume", action="store_true", help="continue from the checkpoint in the output folder")
+    existing.add_argument("--overwrite", action="store_true",
+                          help="begin anew where the output folder has a checkpoint, and replace it")
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     chosen, _ = parser.parse_known_args(arguments)
     if chosen.preset:
@@ -112,7 +117,12 @@ class Trainer:
     def __init__(self, options):
         self.options = options
         if options.direct and options.loss != "absolute":
-            raise SystemExit("--direct needs --loss absolute: predicted colours can be negative and have no logarithm")
+            checkpoint.end("--direct needs --loss absolute: predicted colours can be negative and have no logarithm",
+                           checkpoint.USAGE)
+        # Before the workers are connected: those that end without close() may leave others waiting.
+        self.saved = self.load() if options.resume else None
+        if not (options.resume or options.overwrite):
+            checkpoint.refuse_to_replace(options.output)
         self.workers = Workers(options.device)
         torch.manual_seed(options.seed)
         self.net = network_of(vars(options)).to(self.workers.device)
@@ -123,10 +133,11 @@ class Trainer:
         self.examples = data.Dataset(options.data, options.samples, self.workers.device)
         held_out = max(1, round(options.validation * len(self.examples)))
         if held_out >= len(self.examples):
-            raise SystemExit(f"{options.data}: {len(self.examples)} examples are too few")
+            checkpoint.end(f"{options.data}: {len(self.examples)} examples are too few", checkpoint.USAGE)
         self.learnt, self.validated = split(len(self.examples), held_out)
         if len(self.learnt) < self.workers.count:
-            raise SystemExit(f"{options.data}: {self.workers.count} processes cannot share {len(self.learnt)} examples")
+            checkpoint.end(f"{options.data}: {self.workers.count} processes cannot share {len(self.learnt)} examples",
+                           checkpoint.USAGE)
         self.rates = {"diffuse": options.rate_diffuse, "specular": options.rate_specular, "both": options.rate_tuning}
         self.optimizers = {
             name: torch.optim.Adam((self.net if name == "both" else getattr(self.net, name)).parameters(), lr=rate)
@@ -136,7 +147,8 @@ class Trainer:
         self.batches_done = dict.fromkeys(self.rates, 0)
         batches = len(self.learnt) // self.workers.count * options.patches / options.batch  # per epoch
         lengths = {"both": options.tuning_epochs}
-        self.warm_up = {name: max(options.warm_up * lengths.get(name, options.epochs) * batches, 1.0) for name in self.rates}
+        self.warm_up = {name: max(options.warm_up * lengths.get(name, options.epochs) * batches, 1.0)
+                        for name in self.rates}
         self.epoch, self.seconds, self.losses, self.times = 0, 0.0, {}, []
 
     @property
@@ -154,7 +166,8 @@ class Trainer:
             sides = features.SIDES if side == "both" else (side,)
             parts = {name: self.net.side_and_logits(name, batch, self.predictors[name]) for name in sides}
             if side == "both":
-                result, target = features.recombined({name: part[0] for name, part in parts.items()}, batch["albedo"]), batch["target"]
+                result = features.recombined({name: part[0] for name, part in parts.items()}, batch["albedo"])
+                target = batch["target"]
             else:
                 result, target = parts[side][0], batch[side + ".target"]
             # Logarithms make errors relative; otherwise a few bright patches would dominate. Specular light is a
@@ -180,7 +193,8 @@ class Trainer:
         """Sets the learning rates of this epoch. They fall along half a cosine over each phase. step() applies the
         warm-up on top of that."""
         self.rate_now = {}
-        phases = ((0, self.options.epochs, features.SIDES), (self.options.epochs, self.options.tuning_epochs, ("both",)))
+        first, second = self.options.epochs, self.options.tuning_epochs
+        phases = ((0, first, features.SIDES), (first, second, ("both",)))
         for begin, length, names in phases:
             done = min(max(self.epoch - begin, 0) / max(length, 1), 1.0)
             share = self.options.final_rate + (1 - self.options.final_rate) * 0.5 * (1 + math.cos(math.pi * done))
@@ -221,13 +235,13 @@ class Trainer:
             batches += 1
         for side in sides:
             if int(counts[side]) < 0.9 * batches:
-                raise SystemExit(f"epoch {self.epoch + 1}: {batches - int(counts[side])} of {batches} losses of '{side}' are no finite "
-                                 "numbers; lower its rate, or use a longer --warm-up")
+                raise SystemExit(f"epoch {self.epoch + 1}: {batches - int(counts[side])} of {batches} losses of "
+                                 f"'{side}' are no finite numbers; lower its rate, or use a longer --warm-up")
             self.losses.setdefault(side, []).append(float(sums[side]) / max(int(counts[side]), 1))
         # Without the scaler, a single loss spoils them. The checkpoint of the epoch before is worth more.
         if not all(bool(torch.isfinite(weight).all()) for weight in self.net.parameters()):
-            raise SystemExit(f"epoch {self.epoch + 1}: weights are no finite numbers any more; lower the rate, or use a longer "
-                             "--warm-up")
+            raise SystemExit(f"epoch {self.epoch + 1}: weights are no finite numbers any more; lower the rate, or use "
+                             "a longer --warm-up")
 
     @torch.no_grad()
     def validate(self):
@@ -262,23 +276,29 @@ class Trainer:
             "validated": self.scenes(self.validated),
             "learnt": self.scenes(self.learnt),
         }
-        replace(os.path.join(folder, "checkpoint.pt"), lambda stream: torch.save(state, stream))
+        replace(checkpoint.path_in(folder), lambda stream: torch.save(state, stream))
         losses = json.dumps({"seconds": self.seconds, "losses": self.losses, "times": self.times}, indent=1)
         replace(os.path.join(folder, "losses.json"), lambda stream: stream.write(losses.encode()))
         pictures.write_curves(os.path.join(folder, "losses.svg"), self.losses, phases=("both",))
         row = torch.cat([pictures.shown(light[0].cpu()) for light in self.shown], dim=2)
         pictures.write_png(os.path.join(folder, "validation.png"), row)
 
-    def resume(self):
-        path = os.path.join(self.options.output, "checkpoint.pt")
-        state = torch.load(path, map_location=self.workers.device)
+    def load(self):
+        """Returns the checkpoint, if it is of this network."""
+        state = checkpoint.load(self.options.output)
         for name in NETWORK_OPTIONS:
             now = getattr(self.options, name)
             before = state["options"].get(name, now)
             if before != now:
-                raise SystemExit(f"{path}: was trained with --{name.replace('_', '-')} {before}, not {now}")
+                checkpoint.end(f"{checkpoint.path_in(self.options.output)}: was trained with "
+                               f"--{name.replace('_', '-')} {before}, not {now}", checkpoint.USAGE)
+        return state
+
+    def resume(self):
+        state, self.saved = self.saved, None
         if state.get("validated", self.scenes(self.validated)) != self.scenes(self.validated):
-            raise SystemExit(f"{path}: other examples were held out; go on with the same data and --validation")
+            checkpoint.end(f"{checkpoint.path_in(self.options.output)}: other examples were held out; go on with the "
+                           "same data and --validation", checkpoint.USAGE)
         self.net.load_state_dict(state["net"])
         for name, optimizer in self.optimizers.items():
             optimizer.load_state_dict(state["optimizers"][name])
@@ -291,9 +311,9 @@ class Trainer:
         self.times = state["times"]
 
     def run(self):
-        os.makedirs(self.options.output, exist_ok=True)
         if self.options.resume:
             self.resume()
+        os.makedirs(self.options.output, exist_ok=True)
         began, before, judging = time.monotonic(), self.seconds, 0.0
         while self.epoch < self.epochs:
             late = bool(self.options.time_limit) and time.monotonic() - began > self.options.time_limit

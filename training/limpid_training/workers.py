@@ -45,8 +45,8 @@ class Workers:
         return bool(value.item())
 
     def close(self):
-        """Nothing may use a module of shared() any more. If one were the last to hold the connection, PyTorch would wait
-        for its own thread, which waits for Python, for ever."""
+        """Nothing may use a module of shared() any more. If one were the last to hold the connection, PyTorch would
+        wait for its own thread, which waits for Python, for ever."""
         if self.count > 1:
             gc.collect()
             distributed.barrier()  # the first worker may still be judging and saving

@@ -1,4 +1,6 @@
+import json
 import os
+import struct
 import tempfile
 import unittest
 
@@ -50,6 +52,23 @@ class TensorFileTest(unittest.TestCase):
         self.assertEqual(len(os.listdir("/proc/self/fd")), before)
         read[0][0]["w"][0] = 2.0
         self.assertEqual(tensor_file.read(self.path)[0]["w"][0], 1.0, "changes are not written back")
+
+    def test_other_types_and_shapes_are_refused_by_name(self):
+        for dtype, shape, text in (("BF16", [2], "'a' has elements of type BF16; F16 and F32 can be read"),
+                                   ("I64", [1], "elements of type I64"), ("F16", [3], "does not fit its 4 bytes"),
+                                   ("F16", [2], None)):
+            header = json.dumps({"a": {"dtype": dtype, "shape": shape, "data_offsets": [0, 4]}}).encode()
+            with open(self.path, "wb") as stream:
+                stream.write(struct.pack("<Q", len(header)) + header + bytes(4))
+            if text is None:
+                self.assertEqual(tensor_file.read(self.path)[0]["a"].tolist(), [0.0, 0.0])
+                continue
+            with self.assertRaisesRegex(ValueError, "a.safetensors.*" + text):
+                tensor_file.read(self.path)
+        with open(self.path, "wb") as stream:
+            stream.write(struct.pack("<Q", 2) + b"{]")
+        with self.assertRaisesRegex(ValueError, "a.safetensors.*no JSON"):
+            tensor_file.read(self.path)
 
     def test_a_cut_file_is_noticed(self):
         tensor_file.write(self.path, {"w": torch.ones(100)})

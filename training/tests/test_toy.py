@@ -14,7 +14,8 @@ class ToyTest(unittest.TestCase):
     """Runs docs/kpcn.md, "Try it on a CPU", at a smaller size: from the training data to a denoised frame."""
 
     def limpid(self, *arguments):
-        result = subprocess.run([PROGRAM, *arguments, "--device", "cpu"], cwd=self.folder, capture_output=True, text=True)
+        command = [PROGRAM, *arguments, "--device", "cpu"]
+        result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
     def rel_mse(self, test):

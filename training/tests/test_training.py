@@ -8,6 +8,7 @@ import sys
 import tempfile
 import unittest
 from unittest import mock
+from xml.etree import ElementTree
 
 import torch
 
@@ -149,14 +150,60 @@ class TrainingTest(unittest.TestCase):
         for a, b in zip(whole.net.parameters(), parts.net.parameters()):
             self.assertTrue(torch.equal(a, b))
 
+    def ends(self, code, text, call, *arguments):
+        """Checks the exit code and the message of a program that a call ends."""
+        told = io.StringIO()
+        with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(told):
+            call(*arguments)
+        self.assertEqual(ended.exception.code, code)
+        self.assertIn(text, told.getvalue())
+
+    def test_an_existing_checkpoint_is_replaced_only_if_told(self):
+        epochs = ("--epochs", "2", "--tuning-epochs", "0", "--time-limit", "0.001")
+        self.train("run", *epochs)
+        with open(os.path.join(self.folder, "run", "checkpoint.pt"), "rb") as stream:
+            before = stream.read()
+        self.ends(2, "--resume continues it, --overwrite replaces it", self.train, "run", *epochs)
+        with open(os.path.join(self.folder, "run", "checkpoint.pt"), "rb") as stream:
+            self.assertEqual(stream.read(), before)
+        losses, _ = self.train("run", *epochs, "--overwrite")
+        self.assertEqual(len(losses["validation"]), 1)
+        self.ends(2, "not allowed with", self.train, "run", *epochs, "--overwrite", "--resume")
+
+    def test_a_missing_checkpoint_is_named(self):
+        run, text = os.path.join(self.folder, "none"), os.path.join("none", "checkpoint.pt") + ": there is no"
+        self.ends(3, text, self.train, "none", "--resume")
+        self.assertFalse(os.path.exists(run))
+        self.ends(3, text, export.export, run, os.path.join(self.folder, "w.safetensors"))
+        self.ends(3, text, list, evaluate.evaluate(run, self.data))
+
+    def test_a_damaged_checkpoint_is_named(self):
+        self.train("run", "--epochs", "1", "--tuning-epochs", "0")
+        run, text = os.path.join(self.folder, "run"), os.path.join("run", "checkpoint.pt") + ": cannot be read"
+        with open(os.path.join(run, "checkpoint.pt"), "rb+") as stream:
+            whole = stream.read()
+            for damaged in whole[:-1000], whole[:1000], b"":
+                stream.seek(0)
+                stream.truncate()
+                stream.write(damaged)
+                stream.flush()
+                self.ends(3, text, self.train, "run", "--resume")
+        self.ends(3, text, export.export, run, os.path.join(self.folder, "w.safetensors"))
+        self.ends(3, text, list, evaluate.evaluate(run, self.data))
+
+    def test_checkpoints_are_looked_at_before_workers_are_connected(self):
+        self.train("run", "--epochs", "1", "--tuning-epochs", "0")
+        with mock.patch.object(train, "Workers", side_effect=AssertionError):
+            self.ends(2, "--resume continues it", self.train, "run")
+            self.ends(2, "--hidden", self.train, "run", "--resume", "--hidden", "2")
+            self.ends(3, "there is no", self.train, "none", "--resume")
+
     def test_goes_on_only_with_the_same_network_and_examples(self):
         epochs = ("--epochs", "2", "--tuning-epochs", "0")
         self.train("run", *epochs, "--time-limit", "0.001")
         for option in ("--facing", "-2"), ("--hidden", "2"), ("--diffuse-input", "linear"), ("--inputs", "gradients"):
-            with self.assertRaisesRegex(SystemExit, "was trained with " + option[0]):
-                self.train("run", *epochs, "--resume", *option)
-        with self.assertRaisesRegex(SystemExit, "--validation"):
-            self.train("run", *epochs, "--resume", "--validation", "0.5")
+            self.ends(2, "was trained with " + option[0], self.train, "run", *epochs, "--resume", *option)
+        self.ends(2, "--validation", self.train, "run", *epochs, "--resume", "--validation", "0.5")
 
     def test_weights_that_are_no_numbers_replace_no_checkpoint(self):
         self.train("run", "--epochs", "2", "--time-limit", "0.001")
@@ -180,8 +227,12 @@ class TrainingTest(unittest.TestCase):
     def test_more_processes_than_examples_are_refused(self):
         workers = mock.Mock(count=8, number=0, device=torch.device("cpu"))
         options = train.parse(self.options("run"))
-        with mock.patch.object(train, "Workers", return_value=workers), self.assertRaisesRegex(SystemExit, "8 proc"):
-            train.Trainer(options)
+        with mock.patch.object(train, "Workers", return_value=workers):
+            self.ends(2, "8 proc", train.Trainer, options)
+
+    def test_other_options_that_do_not_fit_are_refused(self):
+        self.ends(2, "needs --loss absolute", self.train, "run", "--direct")
+        self.ends(2, "6 examples are too few", self.train, "run", "--validation", "1")
 
     def test_stops_in_time(self):
         losses, _ = self.train("run", "--epochs", "1000", "--time-limit", "0.01")
@@ -277,6 +328,12 @@ class RelMseTest(unittest.TestCase):
 
 
 class PicturesTest(unittest.TestCase):
+    def test_names_with_markup_stay_text(self):
+        with tempfile.TemporaryDirectory() as folder:
+            plot = os.path.join(folder, "plot.svg")
+            pictures.write_plots(plot, [("Loss", "epoch", {"a<b & c": ([1, 2], [0.5, 0.25])})])
+            self.assertIn("a<b & c", "".join(ElementTree.parse(plot).getroot().itertext()))
+
     def test_black_stays_black(self):
         self.assertEqual(pictures.shown(torch.zeros(3, 2, 2)).abs().sum().item(), 0)
 

@@ -2,6 +2,8 @@
 
 #include <dlfcn.h>
 
+#include <vector>
+
 #include "base/error.h"
 
 namespace limpid {
@@ -16,13 +18,18 @@ const char* shippedName(const denoise::KpcnSettings& settings) {
     return settings.cis565 ? "kpcn-cis565.safetensors" : "kpcn.safetensors";
 }
 
-/// The folder of the file that contains this function; empty if that is unknown.
-fs::path folderOfThisLibrary() {
-    Dl_info info{};
-    if (::dladdr(reinterpret_cast<const void*>(&folderOfThisLibrary), &info) == 0 || !info.dli_fname)
-        return {};
+/// The folders of the library that contains this function and of the program; empty where that is unknown.
+std::vector<fs::path> ownFolders() {
     std::error_code fault;
-    return fs::canonical(info.dli_fname, fault).parent_path();
+    const fs::path program = fs::read_symlink("/proc/self/exe", fault).parent_path();
+    Dl_info info{};
+    if (::dladdr(reinterpret_cast<const void*>(&ownFolders), &info) == 0 || !info.dli_fname) return {program};
+    const fs::path file = info.dli_fname;
+    // The program itself is called there as the user typed it, which may be a name without a folder.
+    if (!file.has_parent_path()) return {program};
+    const fs::path library = fs::canonical(file, fault).parent_path();
+    if (!file.is_absolute()) return {program, library};
+    return {library, program};  // Python may be from a prefix with other weights
 }
 
 }  // namespace
@@ -30,13 +37,17 @@ fs::path folderOfThisLibrary() {
 fs::path shippedWeights(const denoise::KpcnSettings& settings) {
     std::error_code fault;
     const char* name = shippedName(settings);
-    for (const fs::path& folder :
-         {fs::read_symlink("/proc/self/exe", fault).parent_path(), folderOfThisLibrary()}) {
-        // An installed library is in lib, or in a folder below it for each architecture.
-        const fs::path prefix = folder.parent_path();
-        for (const fs::path& candidate : {folder / name, prefix / "share" / "limpid" / name,
-                                          prefix.parent_path() / "share" / "limpid" / name})
-            if (!folder.empty() && fs::exists(candidate, fault)) return candidate;
+    // Python's modules are two folders below that of the build, and four or five below the prefix. Files
+    // further up are not Limpid's.
+    constexpr int toBuild = 2, toPrefix = 5;
+    for (const fs::path& own : ownFolders()) {
+        fs::path folder = own;
+        for (int above = 0; above <= toPrefix && folder.has_relative_path(); ++above) {
+            if (above <= toBuild && fs::exists(folder / name, fault)) return folder / name;
+            const fs::path shared = folder / "share" / "limpid" / name;
+            if (fs::exists(shared, fault)) return shared;
+            folder = folder.parent_path();
+        }
     }
     return {};
 }

@@ -13,8 +13,8 @@ namespace limpid {
 constexpr uint32_t minNetworkSamples = 8;
 
 /// Weights that come with Limpid: kpcn.safetensors, or kpcn-cis565.safetensors if `settings.cis565`. They are
-/// looked for beside the program and beside the library that this is part of, then in ../share/limpid and
-/// ../../share/limpid relative to these. Empty if there is no such file.
+/// looked for in the folder of the library that this is part of and in two above it, and in share/limpid
+/// there and in five above it; then likewise from the program's folder. Empty if there is no such file.
 std::filesystem::path shippedWeights(const denoise::KpcnSettings& settings);
 
 /// Loads the network that the denoiser needs (null: none) from `file`, or from the shipped file if `file` is
