@@ -140,6 +140,10 @@ void addFilmOptions(CLI::App& command, shot::ShotRequest& o, size_t& window) {
             "Share of what was filtered away, in the mean over 5x5 pixels, that is given back: 0 (default) "
             "to 1; more detail and more noise")
         ->check(CLI::Range(0.0f, 1.0f));
+    command.add_option("--recover", o.recover,
+                       "Give back what the filter took away besides noise, by what the noise of neighbours "
+                       "and frames tells: "
+                       "auto (default: SVGF, files of Cycles and pbrt-v4), on, off");
     command.add_option(
         "--shard", o.shard,
         "Only a part of the frames: 2/4 is the second of four; several processes can share a shot");

@@ -66,6 +66,8 @@ typedef struct limpid_shot_desc {
      * run: frames so far are written. May be NULL. */
     int32_t (*progress)(void* user, uint32_t done, uint32_t total);
     void* progress_user;
+    const char* recover; /* what was taken away besides noise comes back: "auto" (default; SVGF, files of Cycles and
+                          * pbrt-v4), "on" or "off"; with a preset it is off by default */
 } limpid_shot_desc;
 
 typedef struct limpid_shot_summary {

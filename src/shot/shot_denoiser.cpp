@@ -6,6 +6,7 @@
 #include "shot/estimate/reflection_motion.h"
 #include "shot/estimate/variance_estimate.h"
 #include "shot/motion/motion_search.h"
+#include "shot/recover/recovery.h"
 
 namespace limpid::shot {
 namespace {
@@ -93,7 +94,9 @@ struct ShotDenoiser::Picture {
     MotionSearch search;  ///< for files without motion
     gpu::FrameGraph graph{oneFrame};
     gpu::FrameGraph coveredColors{oneFrame}, coverage{oneFrame};  ///< of transparent film
+    bool wasCovered = false;  ///< the frame before has left a history in them
     std::vector<std::unique_ptr<gpu::FrameGraph>> groups;
+    Recovery recovery;
     std::optional<HostFrame> last;  ///< of Backwards: the guides of the frame after
     bool lastIsSearched = false;    ///< its motion leads to the frame after it, so it cannot be inverted
 };
@@ -184,6 +187,13 @@ void ShotDenoiser::coverFilm(Picture& picture, const LoadedFrame& file, size_t i
     for (size_t p = 0; p < alpha.pixels.size(); ++p) result.alpha.push_back(std::min(shares[4 * p], 1.0f));
 }
 
+/// Limpid's own files give what a renderer that denoises its frames shows.
+bool ShotDenoiser::recovers(const LoadedFrame& frame, size_t index) const {
+    if (frame.own || options_.recover == Recover::Off) return false;
+    return options_.recover == Recover::On ||
+           (frame.maps[index].hasIndependentPixels && options_.method->name == "svgf");
+}
+
 /// Each group is one signal with the frame's guides. Its light takes the place of the frame's, since a copy
 /// would take much memory.
 void ShotDenoiser::cleanGroups(Picture& picture, const LoadedFrame& file, size_t index, HostFrame& one,
@@ -258,7 +268,12 @@ std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continu
         result.report = picture.converter.report();
         if (!own && direction_ == Direction::Forwards && !frame.layers[i].groups.empty())
             cleanGroups(picture, frame, i, host, continues, result);
-        if (!own && frame.layers[i].isTransparent) coverFilm(picture, frame, i, host, continues, result);
+        const bool covers = !own && frame.layers[i].isTransparent;
+        if (covers) coverFilm(picture, frame, i, host, continues && picture.wasCovered, result);
+        picture.wasCovered = covers;
+        if (recovers(frame, i))
+            picture.recovery.apply(result.beauty, frame.layers[i].images.at("beauty"), host,
+                                   frame.layers[i].samples, continues);
         if (!own) frame.layers[i] = {};
     }
     return results;

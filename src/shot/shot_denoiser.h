@@ -11,6 +11,10 @@
 
 namespace limpid::shot {
 
+/// Whether what a filter took away besides noise comes back; recover/recovery.h. Auto: by SVGF, in files
+/// whose pixels have independent noise.
+enum class Recover { Auto, On, Off };
+
 /// How the pictures are denoised.
 struct ShotOptions {
     const denoise::Denoiser* method = nullptr;
@@ -20,6 +24,7 @@ struct ShotOptions {
     /// Anti-aliases as `settings` say; else as the frames' samples need it, coverage of transparent film
     /// included.
     bool keepsAntialiasing = false;
+    Recover recover = Recover::Auto;
 };
 
 enum class Direction { Forwards, Backwards };
@@ -49,6 +54,7 @@ class ShotDenoiser {
                        bool continues);
     std::vector<float> smoothed(gpu::FrameGraph& graph, const denoise::HostFrame& frame,
                                 std::vector<float> colors, float frames, bool continues);
+    bool recovers(const LoadedFrame& frame, size_t index) const;
     void coverFilm(Picture& picture, const LoadedFrame& file, size_t index, const denoise::HostFrame& frame,
                    bool continues, CleanPicture& result);
 

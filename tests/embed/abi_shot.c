@@ -36,6 +36,7 @@ int main(void) {
     MEMBER(limpid_shot_desc, resume);
     MEMBER(limpid_shot_desc, progress);
     MEMBER(limpid_shot_desc, progress_user);
+    MEMBER(limpid_shot_desc, recover);
     STRUCT(limpid_shot_summary);
     MEMBER(limpid_shot_summary, size);
     MEMBER(limpid_shot_summary, frames);

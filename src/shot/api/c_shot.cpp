@@ -47,6 +47,7 @@ shot::ShotRequest requestOf(const limpid_shot_desc& d) {
     read(d.exposure, request.exposure);
     if (d.strength != 0.0f) request.strength = d.strength;
     request.preserve = d.preserve;
+    read(d.recover, request.recover);
     request.bidirectional = d.bidirectional != 0;
     request.resume = d.resume != 0;
     return request;

@@ -66,6 +66,7 @@ Convention cycles() {
                                    {"normal", "Denoising Normal.XYZ", normalInCamera}},
                  .group = "Combined_",
                  .noisy = "Noisy Image.RGB",
+                 .hasIndependentPixels = true,
                  .composite = "Composite."};
     c.encoding.worldUp = UpAxis::Z;
     c.encoding.depthKind = DepthKind::Planar;
@@ -149,7 +150,8 @@ Convention pbrt() {
                            {"normal", "Ns.XYZ"},
                            {"normal", "N.XYZ"},
                            {"depth", "P.Z"},
-                           {"depth", "Pz"}}};
+                           {"depth", "Pz"}},
+                 .hasIndependentPixels = true};
     normalInCamera(c.encoding);
     c.encoding.depthKind = DepthKind::Planar;
     return c;

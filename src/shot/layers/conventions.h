@@ -35,6 +35,9 @@ struct Convention {
     std::string_view group{};  ///< how layers of light groups begin: "Combined_"; empty if there are none
     /// The noisy beauty of files whose beauty the renderer has denoised itself; empty if there is none.
     std::string_view noisy{};
+    /// Samples count for one pixel only, so noise is independent from pixel to pixel: other filters spread
+    /// each sample over several. Recovery needs it.
+    bool hasIndependentPixels = false;
     /// The prefix of a picture that was made of the others; empty if there is none.
     std::string_view composite{};
 };

@@ -79,7 +79,8 @@ struct LayerMap {
     std::string renderer;  ///< whose conventions were recognised
     std::map<std::string, LayerExpression, std::less<>> layers;  ///< by role
     Encoding encoding;
-    bool searchesMotion = false;  ///< the file has none: it is searched on albedo and normals
+    bool hasIndependentPixels = false;  ///< Convention::hasIndependentPixels
+    bool searchesMotion = false;        ///< the file has none: it is searched on albedo and normals
     /// The layer that the clean beauty replaces; none: that of the role "beauty".
     std::optional<LayerExpression> replaced;
     std::vector<std::string> remarks;  ///< on how the file was understood, for the user

@@ -79,6 +79,7 @@ LayerMap mapOf(const Convention& convention, const ChannelTable& table, const st
     map.title = prefix.empty() ? "" : prefix.substr(0, prefix.size() - 1);
     map.renderer = convention.renderer;
     map.encoding = convention.encoding;
+    map.hasIndependentPixels = convention.hasIndependentPixels;
     map.layers.emplace("beauty", std::move(beauty));
     addAttachedRoles(table, map);
     addAlpha(table, layer, map);

@@ -27,6 +27,7 @@ struct ShotRequest {
     std::string onError = "stop";  ///< or "skip"
     std::string exposure = "auto";
     float strength = 1.0f, preserve = 0.0f;
+    std::string recover = "auto";  ///< or "on", "off"
     bool bidirectional = false, resume = false;
 };
 
