@@ -48,34 +48,41 @@ class CommandLine {
 
 const keyMilliseconds = 100; // what a key chooses in a closed list follows sooner, a choice in an open one later
 
-/// Keys that move through a closed list choose every scene on the way. What they choose waits until Enter is pressed or
-/// the list is left.
+/// Keys that move through a closed list choose every scene on the way, and of what they choose in an open one browsers
+/// tell when the list or the window is left. Such choices wait for Enter or a click.
 function openScene(connection) {
-  let lastKey = -Infinity;
-  const note = make('p', {className: 'note', id: 'open-scene-note', textContent: 'Enter opens it.', hidden: true});
+  let lastKey = -Infinity, opening = 0;
   const stopWaiting = () => {
-    note.hidden = true;
+    waiting.hidden = true;
     select.selectedIndex = 0;
   };
   const open = () => {
     if (select.value) connection.sendNumbered('open', {scene: select.value});
     stopWaiting();
   };
+  const openAndStay = () => {
+    open();
+    select.focus(); // the button, which hides itself, would lose the keyboard's place in the page
+  };
+  const waiting = make('button', {type: 'button', id: 'open-scene-waiting', textContent: 'open it (Enter)',
+                                  hidden: true, click: openAndStay});
   const openWaiting = event => {
-    if (note.hidden) return;
+    if (waiting.hidden) return;
     event.preventDefault(); // Enter opens the list in some browsers
     open();
   };
-  const byKey = {Enter: openWaiting, Escape: stopWaiting, Tab: () => {}};
+  const byKey = {Enter: openWaiting, Escape: stopWaiting};
   const select = make('select', {
-    id: 'open-scene', 'aria-describedby': 'open-scene-note', blur: openWaiting,
+    id: 'open-scene', 'aria-describedby': 'open-scene-waiting',
     keydown: event => byKey[event.key] ? byKey[event.key](event) : lastKey = performance.now(),
     change: () => {
-      if (performance.now() - lastKey > keyMilliseconds) open();
-      else note.hidden = !select.value;
-    }});
+      waiting.hidden = !select.value;
+      const isClicked = performance.now() - lastKey > keyMilliseconds && document.hasFocus();
+      if (isClicked) opening = setTimeout(open); // unless the list is left, of which `blur` tells next
+    },
+    blur: () => clearTimeout(opening)});
   const element = make('div', {className: 'field'}, make('div', {className: 'head'},
-      make('label', {htmlFor: 'open-scene', textContent: 'open another scene'})), select, note);
+      make('label', {htmlFor: 'open-scene', textContent: 'open another scene'})), select, waiting);
   const setScenes = scenes => {
     select.replaceChildren(make('option', {value: '', textContent: 'choose…'}),
                            ...scenes.map(name => make('option', {value: name, textContent: name})));

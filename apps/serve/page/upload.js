@@ -12,7 +12,8 @@ const reasons = {403: 'the program was started without --uploads', 413: 'the fil
 const allowed = name => name.replace(/[^A-Za-z0-9._-]/g, '_');
 
 /// The program takes one file at a time: the first that it can open, wherever it stands among its textures.
-const chosenOf = files => files.find(({name}) => endings.some(ending => name.endsWith(ending))) ?? files[0];
+const canOpen = ({name}) => endings.some(ending => name.toLowerCase().endsWith(ending));
+const chosenOf = files => files.find(canOpen) ?? files[0];
 
 function aboutOthers({length}) {
   if (length < 2) return '';

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "scene/builtin/builtin.h"
+#include "scene/load/load.h"
 
 namespace limpid::serve {
 namespace {
@@ -12,11 +13,6 @@ namespace fs = std::filesystem;
 
 constexpr size_t maxNames = 1000;
 constexpr int maxVisited = 20000;  ///< entries: the server's thread lists them
-
-bool isScene(const fs::path& file) {
-    const std::string extension = file.extension().string();
-    return extension == ".gltf" || extension == ".glb" || extension == ".obj";
-}
 
 std::vector<std::string> builtinNames() {
     std::vector<std::string> names;
@@ -53,7 +49,7 @@ std::vector<std::string> SceneFiles::names() const {
          at.increment(fault), ++visited) {
         if (at.depth() > 8) at.disable_recursion_pending();
         std::error_code unreadable;
-        if (isScene(at->path()) && at->is_regular_file(unreadable))
+        if (scene::isSceneFile(at->path()) && at->is_regular_file(unreadable))
             files.push_back(at->path().lexically_relative(folder_).generic_string());
     }
     std::ranges::sort(files);
@@ -71,7 +67,7 @@ std::string SceneFiles::find(const std::string& name) const {
     // Not looked up in names(): a client may ask often, and listing a large folder takes long.
     const fs::path relative(name);
     if (folder_.empty() || name.find('\0') != std::string::npos || relative.is_absolute() ||
-        !isScene(relative))
+        !scene::isSceneFile(relative))
         throw unknown;
     std::error_code fault;
     const fs::path file = fs::canonical(folder_ / name, fault);

@@ -19,7 +19,8 @@ class SceneFilesTest : public testing::Test {
         : root_(fs::temp_directory_path() / ("limpid_scene_files." + std::to_string(::getpid()))),
           folder_(root_ / "scenes") {
         fs::create_directories(folder_ / "below");
-        for (const char* file : {"secret.obj", "scenes/a.obj", "scenes/below/b.glb", "scenes/notes.txt"})
+        for (const char* file :
+             {"secret.obj", "scenes/a.obj", "scenes/C.GLTF", "scenes/below/b.glb", "scenes/notes.txt"})
             std::ofstream(root_ / file) << "v 0 0 0\n";
         fs::create_symlink(root_ / "secret.obj", folder_ / "link.obj");
         fs::create_directory_symlink(root_, folder_ / "up");
@@ -33,7 +34,7 @@ class SceneFilesTest : public testing::Test {
 TEST_F(SceneFilesTest, ListsAndFindsScenesBelowTheFolder) {
     const SceneFiles files(folder_);
     const auto names = files.names();
-    for (const char* name : {"a.obj", "below/b.glb", "builtin:cornell"}) {
+    for (const char* name : {"a.obj", "C.GLTF", "below/b.glb", "builtin:cornell"}) {
         EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
         EXPECT_NO_THROW(files.find(name)) << name;
     }

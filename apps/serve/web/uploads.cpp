@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "base/text/lower_case.h"
+
 namespace limpid::serve {
 namespace {
 
@@ -18,9 +20,10 @@ constexpr size_t longestName = 100;
 bool isUploadName(const std::string& name) {
     constexpr std::array endings{".glb", ".gltf", ".obj", ".hdr", ".exr"};
     constexpr const char* allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
+    const std::string lower = lowerCase(name);
     return !name.empty() && name.size() <= longestName && name.front() != '.' &&
            name.find_first_not_of(allowed) == std::string::npos &&
-           std::ranges::any_of(endings, [&](const char* ending) { return name.ends_with(ending); });
+           std::ranges::any_of(endings, [&](const char* ending) { return lower.ends_with(ending); });
 }
 
 Upload::Upload(fs::path folder, const std::string& name, uint64_t bytes)

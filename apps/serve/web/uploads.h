@@ -68,7 +68,7 @@ class Uploads {
 };
 
 /// Whether a file may be called so: a name without a path, of letters, digits, '.', '_' and '-', not hidden,
-/// with the ending of a scene in one file or of an environment.
+/// with the ending of a scene in one file or of an environment, in small or capital letters.
 bool isUploadName(const std::string& name);
 
 }  // namespace limpid::serve

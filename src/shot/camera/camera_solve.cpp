@@ -13,20 +13,21 @@ using glm::dmat3;
 using glm::dvec3;
 
 struct DepthSample {
-    double area;  // x^2 + (height y / width)^2
+    double area;  // x^2 + (r y)^2
     double distance, depth;
 };
 
-std::vector<DepthSample> depthSamples(const image::Image& distance, const image::Image& depth,
-                                      float farDepth) {
+std::vector<DepthSample> depthSamples(const image::Image& distance, const image::Image& depth, float farDepth,
+                                      float pixelAspect) {
     std::vector<DepthSample> samples;
     const double w = distance.width, h = distance.height;
+    const double ratio = h / (w * static_cast<double>(pixelAspect));
     const uint32_t stride = std::max(1u, std::min(distance.width, distance.height) / 180u);
     for (uint32_t y = 0; y < distance.height; y += stride) {
         for (uint32_t x = 0; x < distance.width; x += stride) {
             const float d = distance.at(x, y, 0), z = depth.at(x, y, 0);
             if (!(z > 0.0f && z < farDepth && d > 0.0f && d < farDepth)) continue;
-            const double sx = 2.0 * (x + 0.5) / w - 1.0, sy = (2.0 * (y + 0.5) / h - 1.0) * h / w;
+            const double sx = 2.0 * (x + 0.5) / w - 1.0, sy = (2.0 * (y + 0.5) / h - 1.0) * ratio;
             samples.push_back({sx * sx + sy * sy, static_cast<double>(d), static_cast<double>(z)});
         }
     }
@@ -268,8 +269,8 @@ std::optional<ViewFromPositions> viewFromPositions(const image::Image& position,
 }
 
 std::optional<float> horizontalTangent(const image::Image& distance, const image::Image& depth,
-                                       float farDepth) {
-    const std::vector<DepthSample> samples = depthSamples(distance, depth, farDepth);
+                                       float farDepth, float pixelAspect) {
+    const std::vector<DepthSample> samples = depthSamples(distance, depth, farDepth, pixelAspect);
     if (samples.size() < 100) return std::nullopt;
     // Angles from 2 to 150 degrees: the best of a coarse grid, then of finer ones around it.
     double best = 1.0, span = 1.0;

@@ -23,11 +23,12 @@ std::optional<ViewFromPositions> viewFromPositions(const image::Image& position,
 /// Camera space below: x points right, y up, z towards the viewer.
 ///
 /// Of points with the depth z along the axis and the distance d along the ray, which starts at the near plane
-/// (depth n): d = (z - n) sqrt(1 + t^2 (x^2 + (height y / width)^2)), with x, y in [-1, 1]. Returns the
+/// (depth n): d = (z - n) sqrt(1 + t^2 (x^2 + (r y)^2)), with x, y in [-1, 1]. r is the picture's height over
+/// its width: height / (width * pixelAspect). `pixelAspect`: a pixel's width over its height. Returns the
 /// tangent t of half the horizontal angle of view for which n varies least between the pixels (by the median
 /// deviation); none if it varies by more than 0.2 % of the depth, or fewer than 1 % of the pixels are known.
 std::optional<float> horizontalTangent(const image::Image& distance, const image::Image& depth,
-                                       float farDepth);
+                                       float farDepth, float pixelAspect = 1.0f);
 
 /// Returns the rotation from camera space to the world that turns `camera` into `world` (three components,
 /// where both are unit vectors). None if fewer than 100 pixels agree to 2 degrees, or all are parallel.

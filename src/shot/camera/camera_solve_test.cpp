@@ -80,6 +80,14 @@ TEST(CameraSolve, NoCameraFollowsFromAPlaneOrFromNothing) {
     EXPECT_FALSE(viewFromPositions(view.position, view.depth, 9e9f));
 }
 
+TEST(CameraSolve, WidePixelsMakeTheViewLower) {
+    const CameraParams camera = exampleCamera().params(width, height, 2.0f);
+    const View view = viewOf(camera, 0.1f, 2);
+    const auto tangent = horizontalTangent(view.distance, view.depth, 9e9f, 2.0f);
+    ASSERT_TRUE(tangent);
+    EXPECT_NEAR(*tangent / glm::length(camera.right), 1.0f, 0.005f);
+}
+
 TEST(CameraSolve, DistancesFromTheNearPlaneTellTheAngle) {
     for (const float degrees : {8.0f, 37.0f, 90.0f})
         for (const float near : {0.0f, 0.1f}) {

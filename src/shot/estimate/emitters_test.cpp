@@ -61,12 +61,78 @@ TEST(Emitters, ASingleBrightPixelIsNoLamp) {
 TEST(Emitters, InfiniteLampsAreFoundAndNanIsNone) {
     Image picture = pictureWithLamp(20.0f);
     for (uint32_t y = 40; y < 44; ++y)
-        for (uint32_t x = 40; x < 44; ++x)
+        for (uint32_t x = 40; x < 46; ++x)
             for (uint32_t c = 0; c < 3; ++c) picture.at(x, y, c) = y < 42 ? NAN : INFINITY;
     const std::vector<uint8_t> lamps = found(picture);
-    EXPECT_EQ(std::count(lamps.begin(), lamps.end(), 1), 8 * 6 + 4 * 2);
+    EXPECT_EQ(std::count(lamps.begin(), lamps.end(), 1), 8 * 6 + 6 * 2);
     const std::vector<uint8_t> nothing = found(Image(4, 4, 3, NAN));
     EXPECT_EQ(std::count(nothing.begin(), nothing.end(), 1), 0);
+}
+
+/// An infinite spot at (40, 40).
+void addSpot(Image& picture, uint32_t side) {
+    for (uint32_t y = 40; y < 40 + side; ++y)
+        for (uint32_t x = 40; x < 40 + side; ++x)
+            for (uint32_t c = 0; c < 3; ++c) picture.at(x, y, c) = INFINITY;
+}
+
+/// Whether the spot, which may have another lamp beside it, is found.
+bool isSpotFound(const Image& picture, const SurfaceGuides& guides, uint32_t side) {
+    const std::vector<uint8_t> lamps =
+        findEmitters(picture, std::vector<float>(size_t{size} * size, 1.0f), guides);
+    const auto count = static_cast<uint32_t>(std::count(lamps.begin(), lamps.end(), 1));
+    EXPECT_TRUE(count == 8 * 6 || count == 8 * 6 + side * side) << count;
+    return count > 8 * 6;
+}
+
+/// As many as a pixel filter makes of one sample.
+TEST(Emitters, AFewInfinitePixelsAreALampOnlyIfTheyAreASurfaceOfTheirOwn) {
+    for (const uint32_t side : {2u, 3u, 4u, 5u}) {
+        Image picture = pictureWithLamp(20.0f), albedo(size, size, 3), ids(size, size, 1, 7.0f);
+        for (uint32_t y = 0; y < size; ++y)  // a texture
+            for (uint32_t x = 0; x < size; ++x)
+                for (uint32_t c = 0; c < 3; ++c) albedo.at(x, y, c) = (x / 2 + y / 3) % 2 == 0 ? 0.2f : 0.7f;
+        addSpot(picture, side);
+        EXPECT_EQ(isSpotFound(picture, {}, side), side > 4) << side;
+        EXPECT_EQ(isSpotFound(picture, {&albedo, nullptr, &ids}, side), side > 4) << side;
+        for (uint32_t c = 0; c < 3; ++c) albedo.at(40, 41, c) = 8.0f;
+        EXPECT_TRUE(isSpotFound(picture, {.albedo = &albedo}, side)) << side;
+        EXPECT_TRUE(isSpotFound(picture, {&albedo, nullptr, &ids}, side)) << side << ": nobody gave ids";
+        ids.at(1, 1, 0) = 8.0f;
+        EXPECT_EQ(isSpotFound(picture, {&albedo, nullptr, &ids}, side), side > 4) << side << ": no object";
+        ids.at(41, 41, 0) = 8.0f;
+        EXPECT_TRUE(isSpotFound(picture, {&albedo, nullptr, &ids}, side)) << side;
+    }
+}
+
+TEST(Emitters, FinelyDetailedSurfacesAreNoLamps) {
+    Image normal(size, size, 3), ids(size, size, 1, 7.0f);
+    std::mt19937 random(11);
+    std::normal_distribution<float> direction;
+    for (size_t p = 0; p < size_t{size} * size; ++p) {
+        const vec3 n = glm::normalize(vec3(direction(random), direction(random), direction(random)));
+        for (int c = 0; c < 3; ++c) normal.pixels[3 * p + static_cast<size_t>(c)] = n[c];
+    }
+    ids.at(1, 1, 0) = 8.0f;
+    for (const uint32_t side : {2u, 3u, 4u}) {
+        Image picture = pictureWithLamp(20.0f);
+        addSpot(picture, side);
+        EXPECT_FALSE(isSpotFound(picture, {.normal = &normal}, side)) << side;
+        EXPECT_FALSE(isSpotFound(picture, {.normal = &normal, .id = &ids}, side)) << side;
+        ids.at(41, 41, 0) = 8.0f;
+        EXPECT_TRUE(isSpotFound(picture, {.normal = &normal, .id = &ids}, side)) << side;
+        ids.at(41, 41, 0) = 7.0f;
+    }
+}
+
+TEST(Emitters, AFewInfinitePixelsOfALampBelongToIt) {
+    Image picture = pictureWithLamp(60000.0f);
+    for (uint32_t y = 12; y < 15; ++y)
+        for (uint32_t x = 22; x < 25; ++x)
+            for (uint32_t c = 0; c < 3; ++c) picture.at(x, y, c) = INFINITY;
+    const std::vector<uint8_t> lamps = found(picture);
+    EXPECT_EQ(lamps[13 * size + 23], 1);
+    EXPECT_EQ(lamps[11 * size + 21], 1);
 }
 
 TEST(Emitters, ABrightSkyIsNoLamp) {

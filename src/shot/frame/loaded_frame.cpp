@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <set>
 #include <span>
 
@@ -41,31 +40,9 @@ image::LayeredImage layeredImage(const image::ExrDocument& file, bool network) {
     return picture;
 }
 
-/// All parts of an EXR file as one, with the channels' names as in --map.
-image::LayeredImage layersOfExr(std::vector<std::byte> bytes, const std::filesystem::path& path) {
-    image::ExrDocument file = image::ExrDocument::decode(std::move(bytes), path);
-    const ChannelTable table(file.parts());
-    image::LayeredImage result;
-    result.width = file.width();
-    result.height = file.height();
-    for (const LayerChannels& layer : table.layers()) {
-        for (const std::string& component : layer.components) {
-            std::string name = joined(layer.name, component);
-            const ChannelPlace place = *table.find(name);
-            result.channels.push_back(
-                {std::move(name), place.storage, file.values(place.part, place.channel)});
-        }
-    }
-    if (result.channels.empty())
-        throw InputError(path, file.parts().front().unreadable + ", which is not supported");
-    return result;
-}
-
-/// A file's layers; a picture of another format has R, G and B, or Y.
-image::LayeredImage layersOf(std::vector<std::byte> bytes, const std::filesystem::path& path) {
-    const image::PictureFormat format = image::formatOf(bytes);
-    if (format == image::PictureFormat::Exr) return layersOfExr(std::move(bytes), path);
-    const image::Image picture = format == image::PictureFormat::Pfm
+/// Of a picture that is no EXR file: R, G and B, or Y.
+image::LayeredImage layersOfPicture(const std::vector<std::byte>& bytes, const std::filesystem::path& path) {
+    const image::Image picture = image::formatOf(bytes) == image::PictureFormat::Pfm
                                      ? image::decodePfm(bytes, path)
                                      : image::decodePicture(bytes, path).linear;
     image::LayeredImage layers;
@@ -80,7 +57,65 @@ image::ExrDocument openDocument(std::vector<std::byte> bytes, const std::filesys
     // Most frames are EXR files, so those that are nothing known get the error of such a file.
     const bool isExr = format == image::PictureFormat::Exr || format == image::PictureFormat::Unknown;
     return isExr ? image::ExrDocument::decode(std::move(bytes), path)
-                 : image::ExrDocument::of(layersOf(std::move(bytes), path), path);
+                 : image::ExrDocument::of(layersOfPicture(bytes, path), path);
+}
+
+/// A file beside the frame's. Its channels have the names of --map, whatever parts they lie in.
+struct AttachedFile {
+    image::PictureFormat format;
+    image::ExrDocument file;
+    ChannelTable channels;
+};
+
+AttachedFile openAttached(std::vector<std::byte> bytes, const std::filesystem::path& path) {
+    const image::PictureFormat format = image::formatOf(bytes);
+    image::ExrDocument file = openDocument(std::move(bytes), path);
+    ChannelTable channels(file.parts());
+    return {format, std::move(file), std::move(channels)};
+}
+
+/// All its channels, without their values.
+image::LayeredImage channelsOf(const AttachedFile& attached) {
+    image::LayeredImage result;
+    result.width = attached.file.width();
+    result.height = attached.file.height();
+    for (const LayerChannels& layer : attached.channels.layers())
+        for (const std::string& component : layer.components) {
+            std::string name = joined(layer.name, component);
+            const image::Storage storage = attached.channels.find(name)->storage;
+            result.channels.push_back({std::move(name), storage, {}});
+        }
+    if (result.channels.empty())
+        throw InputError(attached.file.name(),
+                         attached.file.parts().front().unreadable + ", which is not supported");
+    return result;
+}
+
+/// The channels of a part that the maps read.
+std::set<std::string> channelsRead(const std::vector<LayerMap>& maps, size_t part) {
+    std::set<std::string> channels;
+    const auto add = [&](const LayerExpression& expression) {
+        for (const ChannelPlace& place : expression.places())
+            if (place.part == part) channels.insert(place.channel);
+    };
+    for (const LayerMap& map : maps) {
+        for (const auto& [role, expression] : map.layers) add(expression);
+        std::for_each(map.groups.begin(), map.groups.end(), add);
+    }
+    return channels;
+}
+
+/// Decodes the parts of attached files that the maps read. Each file is dropped before the next one is
+/// decoded, since all of them decoded take much memory.
+void fillAttached(LoadedFrame& frame, std::span<AttachedFile> files) {
+    const size_t own = frame.file.parts().size() - files.size();
+    for (size_t i = 0; i < files.size(); ++i) {
+        for (const std::string& channel : channelsRead(frame.maps, own + i)) {
+            const ChannelPlace& source = *files[i].channels.find(channel);
+            frame.file.fill(own + i, channel, files[i].file.values(source.part, source.channel));
+        }
+        files[i].file = image::ExrDocument();
+    }
 }
 
 /// Why a format cannot hold such values; empty if it can.
@@ -93,15 +128,14 @@ std::string_view whyUnfit(image::PictureFormat format, RoleValues values) {
     return {};
 }
 
-/// `formats`: of the attached files. Throws UsageError if one cannot hold what it is read as.
-void checkFormats(const LoadedFrame& frame, const LoadOptions& options,
-                  std::span<const image::PictureFormat> formats) {
-    const size_t own = frame.file.parts().size() - formats.size();
+/// Throws UsageError if an attached file cannot hold what it is read as.
+void checkFormats(const LoadedFrame& frame, const LoadOptions& options, std::span<const AttachedFile> files) {
+    const size_t own = frame.file.parts().size() - files.size();
     for (const LayerMap& map : frame.maps) {
         for (const auto& [role, expression] : map.layers) {
             for (const ChannelPlace& place : expression.places()) {
                 if (place.part < own) continue;
-                const std::string_view why = whyUnfit(formats[place.part - own], findRole(role)->values);
+                const std::string_view why = whyUnfit(files[place.part - own].format, findRole(role)->values);
                 if (why.empty()) continue;
                 const auto& [name, pattern] = options.files[place.part - own];
                 throw UsageError(
@@ -139,19 +173,6 @@ bool showsBackground(const ShotLayers& layers) {
         lit += std::any_of(&beauty[3 * p], &beauty[3 * p] + 3, [](float c) { return c > 0.0f; }) ? 1 : 0;
     }
     return 2 * lit > empty;  // lamps have no alpha, either
-}
-
-/// Known cameras take the shape of pixels into account.
-void warnOfPixelShape(LoadedFrame& frame, const LoadOptions& options) {
-    const float aspect = frame.file.pixelAspect();
-    const bool known = std::all_of(frame.layers.begin(), frame.layers.end(),
-                                   [](const ShotLayers& layers) { return layers.camera.has_value(); });
-    if (known || options.givesCameras || std::abs(aspect - 1.0f) < 1e-3f) return;
-    const std::string text = fmt::format(
-        "{}: pixels are {:.3g} times as wide as high; without --camera, they are taken for square",
-        frame.file.name().string(), aspect);
-    if (std::find(frame.warnings.begin(), frame.warnings.end(), text) == frame.warnings.end())
-        frame.warnings.push_back(text);
 }
 
 bool has(const image::ExrPart& part, const LayerInfo& layer) {
@@ -207,17 +228,18 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
     std::vector<std::byte> bytes = readFile(path);
     content.addValues(bytes);
     LoadedFrame frame{.number = number, .file = openDocument(std::move(bytes), path)};
-    std::vector<image::PictureFormat> formats;
+    std::vector<AttachedFile> attached;
     for (const auto& [name, pattern] : options.files) {
         const std::filesystem::path file = pattern.format(std::max(number, 0));
-        std::vector<std::byte> attached = readFile(file);
-        content.addValues(attached);
-        formats.push_back(image::formatOf(attached));
-        frame.file.attach(name, layersOf(std::move(attached), file), file);
+        bytes = readFile(file);
+        content.addValues(bytes);
+        attached.push_back(openAttached(std::move(bytes), file));
+        frame.file.attach(name, channelsOf(attached.back()), file);
     }
     frame.content = content.value();
     frame.maps = recognise(frame.file, options.assignments);
-    checkFormats(frame, options, formats);
+    checkFormats(frame, options, attached);
+    fillAttached(frame, attached);
     frame.warnings = warningsOf(frame.file, frame.maps);
     const bool decodes = isDecodedAhead(frame.file);
     for (LayerMap& map : frame.maps) {
@@ -262,10 +284,10 @@ void unpack(LoadedFrame& frame, const LoadOptions& options) {
         ShotLayers& layers = frame.layers.emplace_back(readLayers(frame.file, map));
         layers.camera = cameraOfAttributes(frame.file, map.view);
         layers.samples = samplesOf(frame.file);
-        layers.isTransparent = layers.isTransparent && !showsBackground(layers);
+        layers.showsSky = layers.isTransparent && showsBackground(layers);
+        layers.isTransparent = layers.isTransparent && !layers.showsSky;
         if (options.network || !options.searchMotion) restoreZeroMotion(layers);
     }
-    warnOfPixelShape(frame, options);
 }
 
 }  // namespace limpid::shot

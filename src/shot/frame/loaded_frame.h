@@ -34,19 +34,19 @@ struct LoadedFrame {
 
 struct LoadOptions {
     Assignments assignments;
-    bool network = false;       ///< the denoiser reads variances, and no motion
-    bool sequence = false;      ///< layers of a sequence are needed
-    bool searchMotion = true;   ///< in sequences whose files have no motion
-    bool layersOnly = false;    ///< Limpid's own files are read as `layers`, too
-    bool givesCameras = false;  ///< --camera, which makes those of files needless
+    bool network = false;      ///< the denoiser reads variances, and no motion
+    bool sequence = false;     ///< layers of a sequence are needed
+    bool searchMotion = true;  ///< in sequences whose files have no motion
+    bool layersOnly = false;   ///< Limpid's own files are read as `layers`, too
     /// Files beside the frame's: all their channels are like those of a part of this name. If it is a role's,
     /// they win over the frame's own layers.
     std::vector<std::pair<std::string, FramePattern>> files;
 };
 
 /// Reads a file, and decodes it unless it takes much memory: EXR, or a picture in PFM, Radiance HDR, PNG or
-/// JPEG, which has a beauty alone. Throws InputError, and UsageError if an attached file is not used, or its
-/// format cannot hold the values of its role.
+/// JPEG, which has a beauty alone. Of attached files, only the parts that are used are decoded. Throws
+/// InputError, and UsageError if an attached file is not used, or its format cannot hold the values of its
+/// role.
 LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadOptions& options);
 
 /// The hash LoadedFrame::content, without decoding. Throws InputError if a file cannot be read.

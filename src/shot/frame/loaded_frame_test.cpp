@@ -120,12 +120,48 @@ TEST(LoadedFrame, WhatStaysNoisyIsSaid) {
     EXPECT_THAT(overscan.warnings[0],
                 HasSubstr("a.exr: 6 pixels outside the display window (overscan) stay"));
     const LoadedFrame wide = load({.channels = names("R G B"), .pixelAspect = 2.0f});
-    ASSERT_EQ(wide.warnings.size(), 1u);
-    EXPECT_THAT(wide.warnings[0], HasSubstr("a.exr: pixels are 2 times as wide as high; without --camera"));
-    const LoadOptions options{.givesCameras = true};
-    LoadedFrame given = loadFrame(folder / "a.exr", 0, options);
-    unpack(given, options);
-    EXPECT_THAT(given.warnings, IsEmpty());
+    EXPECT_EQ(wide.layers.at(0).pixelAspect, 2.0f);
+    EXPECT_THAT(wide.warnings, IsEmpty());
+}
+
+TEST(LoadedFrame, PartsOfAnAttachedFileThatAreNotUsedAreNotDecoded) {
+    const TempFolder folder;
+    constexpr uint32_t side = 32;
+    const auto frame =
+        test::writeParts(folder / "a.exr", {{.channels = names("R G B")}}, side, side, componentValue);
+    const auto other = test::writeParts(folder / "b.exr",
+                                        {{.name = "color", .channels = names("R G B A")},
+                                         {.name = "albedo", .channels = names("R G B")},
+                                         {.name = "N", .channels = names("X Y Z")}},
+                                        side, side, componentValue);
+    std::string bytes = image::test::get(other);
+    bytes.replace(bytes.size() - 8, 8, 8, '\xff');  // the end of the last part's compressed pixels
+    image::test::put(other, bytes);
+    LoadedFrame loaded = loadFrame(frame, 0, withFile("albedo", other));
+    EXPECT_EQ(loaded.maps.at(0).find("albedo")->evaluate(loaded.file).at(9, 9, 2), 'B' / 128.0f);
+    const size_t attached = loaded.file.parts().size() - 1;
+    EXPECT_THROW(loaded.file.values(attached, "N.X"), Error) << "it was not decoded";
+    LoadOptions mapped = withFile("n", other);
+    mapped.assignments = {{"normal", "n.N.XYZ"}};
+    EXPECT_THROW(loadFrame(frame, 0, mapped), InputError) << "it is damaged";
+}
+
+TEST(LoadedFrame, SeveralFilesAreAttachedAndChannelsUsedTwice) {
+    const TempFolder folder;
+    const auto frame =
+        test::writeParts(folder / "a.exr", {{.channels = names("R G B")}}, 2, 1, componentValue);
+    const auto colors =
+        test::writeParts(folder / "b.exr", {{.channels = names("R G B")}}, 2, 1, componentValue);
+    const auto normals =
+        test::writeParts(folder / "c.exr", {{.channels = names("X Y Z")}}, 2, 1, componentValue);
+    LoadOptions options = withFile("b", colors);
+    options.files.emplace_back("normal", FramePattern(normals.string()));
+    options.assignments = {{"albedo", "b.RGB"}, {"roughness", "b.G"}};
+    LoadedFrame loaded = loadFrame(frame, 0, options);
+    const LayerMap& map = loaded.maps.at(0);
+    EXPECT_EQ(map.find("albedo")->evaluate(loaded.file).at(1, 0, 1), 'G' / 128.0f);
+    EXPECT_EQ(map.find("roughness")->evaluate(loaded.file).at(1, 0, 0), 'G' / 128.0f);
+    EXPECT_EQ(map.find("normal")->evaluate(loaded.file).at(1, 0, 2), 'Z' / 128.0f);
 }
 
 /// Colours are divided by it, but it is no layer of the frame.
@@ -157,6 +193,22 @@ TEST(LoadedFrame, FilmIsTransparentWhereItsEmptyPixelsAreBlack) {
     };
     EXPECT_TRUE(isTransparent(0.0f));
     EXPECT_FALSE(isTransparent(0.5f)) << "the sky shows where alpha is 0";
+}
+
+TEST(LoadedFrame, FilmIsTransparentIfAThousandthOfThePixelsIs) {
+    const TempFolder folder;
+    const auto isTransparent = [&](uint32_t holes) {
+        const auto value = [&](const std::string& channel, uint32_t x, uint32_t y) {
+            return channel == "A" && y == 9 && x < holes ? 0.5f : 1.0f;
+        };
+        test::writeParts(folder / "a.exr", {{.channels = names("R G B A")}}, 100, 30, value);
+        LoadedFrame frame = loadFrame(folder / "a.exr", 0, {});
+        unpack(frame, {});
+        return frame.layers.at(0).isTransparent;
+    };
+    EXPECT_FALSE(isTransparent(0));
+    EXPECT_FALSE(isTransparent(2));
+    EXPECT_TRUE(isTransparent(3));
 }
 
 TEST(LoadedFrame, TheCleanNoisyImageOfBlenderBecomesItsCombined) {

@@ -25,14 +25,18 @@ constexpr float supposedTangent = 0.4663f;
 /// Where the file does not tell: those that networks were trained with.
 constexpr uint32_t supposedSamples = 32;
 
+/// Of the picture: its height over its width.
+float ratioOf(const ShotLayers& layers) {
+    return static_cast<float>(layers.height) / (static_cast<float>(layers.width) * layers.pixelAspect);
+}
+
 /// A camera with these axes (columns: right, up, towards the viewer).
 CameraParams cameraWith(const mat3& axes, const vec3& eye, float tangent, const ShotLayers& layers) {
-    const float ratio = static_cast<float>(layers.height) / static_cast<float>(layers.width);
     CameraParams camera{};
     camera.origin = eye;
     camera.forward = -axes[2];
     camera.right = axes[0] * tangent;
-    camera.up = axes[1] * (tangent * ratio);
+    camera.up = axes[1] * (tangent * ratioOf(layers));
     camera.spread = 2.0f * tangent / static_cast<float>(layers.width);
     return camera;
 }
@@ -42,7 +46,7 @@ std::vector<TrackedPoint> trackedPoints(const ShotLayers& layers, const Encoding
     const CameraParams camera = cameraWith(mat3(1.0f), vec3(0.0f), tangent, layers);
     const std::vector<float> distances = distancesOf(layers, encoding, camera);
     const Image& motion = layers.images.at("motion");
-    const vec2 plane(tangent, tangent * static_cast<float>(layers.height) / static_cast<float>(layers.width));
+    const vec2 plane(tangent, tangent * ratioOf(layers));
     const vec2 pixel = 2.0f * plane / vec2(layers.width, layers.height);
     std::vector<TrackedPoint> points;
     const uint32_t stride = std::max(1u, std::min(layers.width, layers.height) / 90u);
@@ -70,7 +74,8 @@ float distanceAt(const std::vector<float>& distance, const ShotLayers& layers, c
 
 /// What is behind everything is not filtered, and neither are lamps.
 void hideEmitters(const ShotLayers& layers, std::vector<float>& distance) {
-    const std::vector<uint8_t> emits = findEmitters(layers.images.at("beauty"), distance);
+    const SurfaceGuides guides{layers.find("albedo"), layers.find("normal"), layers.find("id")};
+    const std::vector<uint8_t> emits = findEmitters(layers.images.at("beauty"), distance, guides);
     for (size_t p = 0; p < emits.size(); ++p)
         if (emits[p]) distance[p] = 0.0f;
 }
@@ -107,16 +112,34 @@ bool isZero(const Image& image) {
     return std::all_of(image.pixels.begin(), image.pixels.end(), [](float value) { return value == 0.0f; });
 }
 
-/// A depth that is nowhere above 0 would make all pixels background, which is not denoised. It is right where
-/// the normals are 0, too: the frame shows the sky.
+/// Whether other layers than the depth tell that the frame shows the sky alone.
+bool isSky(const ShotLayers& layers) {
+    if (const Image* const normal = layers.find("normal")) return isZero(*normal);
+    bool isKnown = false;
+    for (const char* role : {"albedo", "albedoSpecular", "diffuse", "specular"}) {
+        const Image* const image = layers.find(role);
+        if (image && !isZero(*image)) return false;
+        isKnown = isKnown || image;
+    }
+    const Image* const alpha = layers.find("alpha");
+    return isKnown || (alpha && isZero(*alpha));
+}
+
+/// A depth that is nowhere above 0 would make all pixels background, which is not denoised.
 void dropEmptyDepth(ShotLayers& layers) {
     const Image* const depth = layers.find("depth");
-    const Image* const normal = layers.find("normal");
-    if (!depth || (normal && isZero(*normal))) return;
+    if (!depth) return;
     if (std::any_of(depth->pixels.begin(), depth->pixels.end(), [](float z) { return z > 0.0f; })) return;
+    if (isSky(layers)) return;
     layers.images.erase("depth");
     layers.problems.push_back(fmt::format(
         "the layer 'depth' has no value above 0, so it is taken as missing: {}", findRole("depth")->without));
+}
+
+bool isFilmTransparent(const Image& alpha) {
+    const auto uncovered = static_cast<size_t>(
+        std::count_if(alpha.pixels.begin(), alpha.pixels.end(), [](float share) { return share < 0.999f; }));
+    return uncovered > 0 && 1000 * uncovered >= alpha.pixels.size();
 }
 
 void dropZeroMotion(ShotLayers& layers) {
@@ -142,6 +165,7 @@ ShotLayers readLayers(image::ExrDocument& file, const LayerMap& map) {
     ShotLayers layers;
     layers.width = file.width();
     layers.height = file.height();
+    layers.pixelAspect = file.pixelAspect();
     layers.groups.resize(map.groups.size());
     std::vector<std::pair<const LayerExpression*, Image*>> wanted;
     for (const auto& [role, expression] : map.layers) wanted.emplace_back(&expression, &layers.images[role]);
@@ -149,9 +173,7 @@ ShotLayers readLayers(image::ExrDocument& file, const LayerMap& map) {
     // Parts are decoded when they are first used, which is not for several threads.
     decodeParts(file, map);
     tbb::parallel_for_each(wanted, [&](const auto& one) { *one.second = one.first->evaluate(file); });
-    if (const Image* const alpha = layers.find("alpha"))
-        layers.isTransparent = std::any_of(alpha->pixels.begin(), alpha->pixels.end(),
-                                           [](float share) { return share < 0.999f; });
+    if (const Image* const alpha = layers.find("alpha")) layers.isTransparent = isFilmTransparent(*alpha);
     dropEmptyDepth(layers);
     dropZeroMotion(layers);
     return layers;
@@ -189,7 +211,7 @@ CameraParams FrameConverter::solvedCamera(const ShotLayers& layers) {
     const Image* const inCamera = layers.find("cameraNormal");
     std::optional<float> tangent;
     if (depth && distance && map_.encoding.depthKind == DepthKind::Planar)
-        tangent = horizontalTangent(*distance, *depth, map_.encoding.farDepth);
+        tangent = horizontalTangent(*distance, *depth, map_.encoding.farDepth, layers.pixelAspect);
     if (!tangent && last_ && last_->comparable) tangent = glm::length(last_->camera.right);
     if (!tangent) report_.camera = CameraSource::Supposed;
     const float t = tangent.value_or(supposedTangent);
@@ -259,10 +281,19 @@ void FrameConverter::replaceZeroMotion(ShotLayers& layers, bool continues) {
     search_->replaceZero(layers, map_.encoding, continues);
 }
 
+/// Frames in which hardly anything is uncovered belong to the same film: if they were treated as opaque, a
+/// shot near the limit would flicker, and averages over frames would begin anew.
+void FrameConverter::continueFilm(ShotLayers& layers, bool continues) {
+    const bool stays = continues && wasTransparent_ && !layers.showsSky;
+    layers.isTransparent = layers.isTransparent || stays;
+    wasTransparent_ = layers.isTransparent;
+}
+
 denoise::HostFrame FrameConverter::convertUsingUp(ShotLayers& layers,
                                                   const std::optional<CameraParams>& given, bool continues,
                                                   bool alone) {
     replaceZeroMotion(layers, continues);
+    continueFilm(layers, continues);
     used_ = &layers;
     denoise::HostFrame frame =
         alone ? convertAlone(layers, given, continues) : convert(layers, given, continues);

@@ -16,8 +16,11 @@ namespace limpid::shot {
 /// The layers of one picture of a file, decoded, in the file's encoding.
 struct ShotLayers {
     uint32_t width = 0, height = 0;
-    /// The film is transparent: light and albedo are multiplied by alpha, which is below 1 somewhere.
+    float pixelAspect = 1.0f;  ///< a pixel's width over its height
+    /// The film is transparent: light and albedo are multiplied by alpha, which is below 0.999 in at least
+    /// one of a thousand pixels. Fewer are holes or noise; then the frame is treated as opaque.
     bool isTransparent = false;
+    bool showsSky = false;  ///< behind the film, which is not transparent for that reason
     std::map<std::string, image::Image, std::less<>> images;  ///< by role
     std::optional<CameraParams> camera;                       ///< of the file's attributes
     uint32_t samples = 0;                                     ///< per pixel; 0: unknown
@@ -37,7 +40,8 @@ struct ShotLayers {
 /// Decodes the parts that the map's layers lie in.
 void decodeParts(image::ExrDocument& file, const LayerMap& map);
 /// Leaves out layers that say nothing: motion that is 0 everywhere (ShotLayers::zeroMotion), and depth
-/// without a value above 0 where normals tell of surfaces (ShotLayers::problems).
+/// without a value above 0 (ShotLayers::problems), unless other layers tell that only the sky is seen: the
+/// normals are 0 everywhere; without them albedo, diffuse and specular light; without those, alpha.
 ShotLayers readLayers(image::ExrDocument& file, const LayerMap& map);
 /// Believes vectors that are all 0: puts them back.
 void restoreZeroMotion(ShotLayers& layers);
@@ -86,6 +90,7 @@ class FrameConverter {
     /// beauty and alpha, those of light before those of geometry are made. If the motion is 0 everywhere
     /// although the picture changes, it is searched: it then leads to the frame of the last call, also if
     /// `alone` (FrameReport::motionSearched). Light that is not filtered becomes finite in the layers, too.
+    /// Once the film was transparent, that of frames that continue is, too (ShotLayers::isTransparent).
     denoise::HostFrame convertUsingUp(ShotLayers& layers, const std::optional<CameraParams>& given,
                                       bool continues, bool alone);
 
@@ -102,12 +107,14 @@ class FrameConverter {
     CameraParams solvedCamera(const ShotLayers& layers);
     void addMotion(const ShotLayers& layers, const View& view, denoise::HostFrame& frame) const;
     void replaceZeroMotion(ShotLayers& layers, bool continues);
+    void continueFilm(ShotLayers& layers, bool continues);
 
     LayerMap map_;
     FrameReport report_;
     std::optional<View> last_;
     bool continues_ = false;
     bool alone_ = false, reflects_ = false;
+    bool wasTransparent_ = false;           ///< the film, in the last call of convertUsingUp()
     ShotLayers* used_ = nullptr;            ///< in convertUsingUp()
     std::unique_ptr<MotionSearch> search_;  ///< while vectors are all 0
 };

@@ -132,6 +132,28 @@ TEST(ShotFrame, TransparentFilmIsDividedByItsAlpha) {
     EXPECT_EQ(missed.emission[4 * at(7, 9)], 1.5f);
 }
 
+TEST(ShotFrame, TransparentFilmStaysSoUntilACutOrASky) {
+    FrameConverter converter(planar());
+    const auto isTransparent = [&](bool uncovered, bool continues, bool sky = false) {
+        ShotLayers layers = layersOf();
+        layers.isTransparent = uncovered;
+        layers.showsSky = sky;
+        layers.images["alpha"] = filled(1, 0.5f);
+        const HostFrame frame =
+            converter.convertUsingUp(layers, cameraAt(0).params(columns, rows), continues, false);
+        EXPECT_EQ(frame.diffuse[4 * at(5, 9)], layers.isTransparent ? 3.0f : 1.5f);
+        return layers.isTransparent;
+    };
+    EXPECT_FALSE(isTransparent(false, false));
+    EXPECT_TRUE(isTransparent(true, true));
+    EXPECT_TRUE(isTransparent(false, true));
+    EXPECT_TRUE(isTransparent(false, true)) << "also two frames later";
+    EXPECT_FALSE(isTransparent(false, false)) << "a cut";
+    EXPECT_TRUE(isTransparent(true, true));
+    EXPECT_FALSE(isTransparent(false, true, true));
+    EXPECT_FALSE(isTransparent(false, true));
+}
+
 TEST(ShotFrame, NormalsAreTurnedIntoTheWorld) {
     LayerMap map = planar();
     map.encoding.normalSpace = NormalSpace::Camera;
@@ -159,6 +181,34 @@ TEST(ShotFrame, AMixedNormalIsThatOfTheNeighbourAtTheSameDistance) {
         FrameConverter(planar()).convert(layers, cameraAt(0).params(columns, rows), false);
     EXPECT_EQ(frame.normal[4 * at(20, 9) + 2], 1.0f);
     EXPECT_EQ(frame.normal[4 * at(21, 9)], 1.0f);
+}
+
+/// The camera is found in depth and distance.
+TEST(ShotFrame, SolvedCamerasKnowTheShapeOfPixels) {
+    ShotLayers layers = layersOf();
+    layers.pixelAspect = 2.0f;
+    const CameraParams camera = cameraAt(0).params(columns, rows, layers.pixelAspect);
+    Image distance = filled(1, 0.0f), depth = filled(1, 0.0f);
+    for (uint32_t y = 0; y < rows; ++y)
+        for (uint32_t x = 0; x < columns; ++x) {
+            const float sx = 2.0f * (static_cast<float>(x) + 0.5f) / columns - 1.0f;
+            const float sy = 1.0f - 2.0f * (static_cast<float>(y) + 0.5f) / rows;
+            depth.at(x, y, 0) = 3.0f + static_cast<float>((3 * x + 5 * y) % 7);
+            distance.at(x, y, 0) =
+                depth.at(x, y, 0) * glm::length(camera.forward + sx * camera.right + sy * camera.up);
+        }
+    layers.images["depth"] = depth;
+    layers.images["distance"] = distance;
+    FrameConverter converter(planar());
+    const HostFrame frame = converter.convert(layers, {}, false);
+    EXPECT_EQ(converter.report().camera, CameraSource::Solved);
+    EXPECT_NEAR(glm::length(frame.camera.right) / glm::length(camera.right), 1.0f, 5e-3f);
+    EXPECT_NEAR(glm::length(frame.camera.up) / glm::length(camera.up), 1.0f, 5e-3f);
+    EXPECT_NEAR(frame.depth[4 * at(1, 1)] / distance.at(1, 1, 0), 1.0f, 5e-3f);
+    layers.images.erase("distance");
+    const HostFrame supposed = FrameConverter(planar()).convert(layers, {}, false);
+    EXPECT_NEAR(glm::length(supposed.camera.up) / glm::length(supposed.camera.right), rows / (2.0f * columns),
+                1e-4f);
 }
 
 TEST(ShotFrame, MotionIsConvertedAndHasTheDifferenceOfDistances) {
@@ -234,11 +284,24 @@ TEST(ShotFrame, AnInfiniteLampIsFoundWithoutOtherLayers) {
     ShotLayers layers = layersOf();
     for (const char* role : {"depth", "normal"}) layers.images.erase(role);
     for (uint32_t y = 9; y < 13; ++y)
-        for (uint32_t i = 0; i < 12; ++i) layers.images["beauty"].at(5 + i / 3, y, i % 3) = INFINITY;
+        for (uint32_t i = 0; i < 15; ++i) layers.images["beauty"].at(5 + i / 3, y, i % 3) = INFINITY;
     const HostFrame frame =
         FrameConverter(planar()).convert(layers, cameraAt(0).params(columns, rows), false);
     EXPECT_EQ(frame.emission[4 * at(6, 10)], 65504.0f);
     EXPECT_EQ(frame.emission[4 * at(20, 20)], 0.0f);
+}
+
+TEST(ShotFrame, AnInfiniteFireflyIsNoLamp) {
+    ShotLayers layers = layersOf();
+    for (uint32_t y = 9; y < 12; ++y)
+        for (uint32_t i = 0; i < 9; ++i) layers.images["beauty"].at(5 + i / 3, y, i % 3) = INFINITY;
+    const CameraParams camera = cameraAt(0).params(columns, rows);
+    HostFrame frame = FrameConverter(planar()).convert(layers, camera, false);
+    EXPECT_EQ(frame.emission[4 * at(6, 10)], 0.0f);
+    EXPECT_TRUE(std::isinf(frame.diffuse[4 * at(6, 10)])) << "denoisers leave it out";
+    layers.images["normal"].at(6, 10, 2) = -1.0f;  // a bulb
+    frame = FrameConverter(planar()).convert(layers, camera, false);
+    EXPECT_EQ(frame.emission[4 * at(6, 10)], 65504.0f);
 }
 
 /// Of a file with a beauty, normals, a depth and motion.
@@ -267,6 +330,30 @@ TEST(ReadLayers, ADepthWithoutValuesIsMissing) {
     const ShotLayers sky = readBack(0.0f, 0.0f, 1.0f);
     EXPECT_TRUE(sky.find("depth")) << "there are no normals either";
     EXPECT_TRUE(sky.problems.empty());
+}
+
+/// Some renderers write a depth of 0 where nothing is hit.
+TEST(ReadLayers, WithoutNormalsOtherLayersTellThatOnlySkyIsSeen) {
+    const auto keepsDepth = [](const std::vector<std::pair<std::string, float>>& layers) {
+        image::LayeredImage file;
+        file.width = columns;
+        file.height = rows;
+        file.add("", "RGB", filled(3, 1.0f), image::Storage::Float);
+        file.add("depth", "Z", filled(1, 0.0f), image::Storage::Float);
+        for (const auto& [name, value] : layers)
+            file.add(name, name.empty() ? "A" : "RGB", filled(name.empty() ? 1 : 3, value),
+                     image::Storage::Float);
+        image::ExrDocument document = image::ExrDocument::of(file, "a.exr");
+        return readLayers(document, recognise(document, {}).at(0)).find("depth") != nullptr;
+    };
+    EXPECT_FALSE(keepsDepth({})) << "nothing tells";
+    EXPECT_TRUE(keepsDepth({{"albedo", 0.0f}}));
+    EXPECT_FALSE(keepsDepth({{"albedo", 0.5f}}));
+    EXPECT_TRUE(keepsDepth({{"diffuse", 0.0f}, {"specular", 0.0f}}));
+    EXPECT_FALSE(keepsDepth({{"albedo", 0.0f}, {"diffuse", 0.5f}}));
+    EXPECT_TRUE(keepsDepth({{"", 0.0f}})) << "nothing covers the film";
+    EXPECT_FALSE(keepsDepth({{"", 1.0f}})) << "opaque film";
+    EXPECT_FALSE(keepsDepth({{"", 0.0f}, {"albedo", 0.5f}}));
 }
 
 TEST(ReadLayers, MotionThatIsZeroEverywhereIsNotBelieved) {

@@ -36,44 +36,60 @@ FrameReport viewOf(FrameConverter& converter, const LoadedFrame& frame, size_t p
     return converter.report();
 }
 
+/// The frame after the first one, which tells how things move; none if there is none.
+std::optional<LoadedFrame> loadNext(const ShotJob& job) {
+    const size_t at = job.firstAsked, next = at + 1;
+    if (next >= job.frames.size() || job.frames[next] != job.frames[at] + 1) return std::nullopt;
+    try {
+        return load(job, job.frames[next]);
+    } catch (const InputError&) {
+        if (!job.skipUnreadable && next < job.endAsked) throw;
+    }
+    return std::nullopt;
+}
+
+/// Searches the motion of a picture of the second frame as denoising would. Returns whether it did.
+bool searchMotion(const LoadedFrame& first, LoadedFrame& second, size_t picture) {
+    const LayerMap &before = first.maps[picture], &now = second.maps[picture];
+    ShotLayers& layers = second.layers[picture];
+    const bool isMissing = before.searchesMotion && now.searchesMotion;
+    if (!isMissing && !layers.zeroMotion) return false;
+    MotionSearch search;
+    search.next(first.layers[picture], false);
+    if (isMissing) {
+        if (auto motion = search.next(layers, true)) layers.images["motion"] = std::move(*motion);
+        return true;
+    }
+    search.replaceZero(layers, before.encoding, true);
+    return layers.motionSearched;
+}
+
+/// The camera and the motion of a picture. `second`: null if there is no such frame.
+std::string explainPictureView(const LoadedFrame& first, LoadedFrame* second, size_t picture,
+                               const ShotJob& job) {
+    FrameConverter converter(first.maps[picture]);
+    FrameReport report = viewOf(converter, first, picture, job, false);
+    if (!second || picture >= second->maps.size()) return explainView(report);
+    const bool isSearched = searchMotion(first, *second, picture);
+    report = viewOf(converter, *second, picture, job, true);
+    std::string text = explainView(report);
+    const auto check =
+        checkMotion(first.layers[picture], second->layers[picture], first.maps[picture].encoding);
+    if (check) text += explainMotion(*check, first.number, second->number, isSearched);
+    return text;
+}
+
 }  // namespace
 
 std::string explainShot(const ShotJob& job) {
-    const size_t at = job.firstAsked, next = at + 1;
-    const LoadedFrame first = load(job, job.frames[at]);
-    std::optional<LoadedFrame> second;
-    if (next < job.frames.size() && job.frames[next] == job.frames[at] + 1) {
-        try {
-            second = load(job, job.frames[next]);
-        } catch (const InputError&) {
-            if (!job.skipUnreadable && next < job.endAsked) throw;
-        }
-    }
+    const LoadedFrame first = load(job, job.frames[job.firstAsked]);
+    std::optional<LoadedFrame> second = loadNext(job);
     std::string text = explainLayers(first);
     if (const std::string variances = explainVariances(first); !variances.empty())
         text += fmt::format("    {}\n", variances);
     for (size_t i = 0; i < first.maps.size(); ++i) {
         if (first.maps.size() > 1) text += pictureLine(first.maps[i]);
-        FrameConverter converter(first.maps[i]);
-        FrameReport report = viewOf(converter, first, i, job, false);
-        const bool pair = second && i < second->maps.size();
-        bool searched = pair && first.maps[i].searchesMotion && second->maps[i].searchesMotion;
-        if (searched) {
-            MotionSearch search;
-            search.next(first.layers[i], false);
-            if (auto motion = search.next(second->layers[i], true))
-                second->layers[i].images["motion"] = std::move(*motion);
-        } else if (pair && second->layers[i].zeroMotion) {
-            MotionSearch search;
-            search.next(first.layers[i], false);
-            search.replaceZero(second->layers[i], first.maps[i].encoding, true);
-            searched = second->layers[i].motionSearched;
-        }
-        if (pair) report = viewOf(converter, *second, i, job, true);
-        text += explainView(report);
-        if (!pair) continue;
-        const auto check = checkMotion(first.layers[i], second->layers[i], first.maps[i].encoding);
-        if (check) text += explainMotion(*check, first.number, second->number, searched);
+        text += explainPictureView(first, second ? &*second : nullptr, i, job);
     }
     return text;
 }

@@ -16,10 +16,10 @@ def drop(browser, selector, *files):
 
 def test_upload(browser, folder):
     """Scenes of this device, dropped on the picture and beside it. Undo does not go on into another scene."""
-    for name, selector, seed in (('dropped', '#stage', 3), ('beside', '#panel-head', 4)):
+    for name, ending, selector, seed in (('dropped', 'obj', '#stage', 3), ('beside', 'OBJ', '#panel-head', 4)):
         type_into(browser, '#field-seed-number', str(seed))
         browser.wait("!document.getElementById('undo').disabled", f'{name}: a step of undo')
-        file = pathlib.Path(folder) / f'{name}.obj'
+        file = pathlib.Path(folder) / f'{name}.{ending}'
         file.write_text('v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n')
         texture = pathlib.Path(folder) / f'{name}.png'
         texture.write_bytes(b'')
@@ -34,22 +34,51 @@ def test_upload(browser, folder):
         browser.wait("document.getElementById('field-seed-number').valueAsNumber === 0", 'the default seed')
 
 
+def leave_window(browser):
+    """To another tab and back."""
+    here = browser.open_tab()
+    browser.call('Page.bringToFront')
+    browser.call('Page.close')
+    browser.session = here
+    browser.call('Page.bringToFront')
+
+
 def test_open_scene(browser):
-    """A choice in the list opens a scene at once; keys open none on the way to another one."""
+    """Enter and clicks open a scene, but keys on the way to another one do not, nor does leaving the list."""
     name = "document.getElementById('scene-name').textContent"
     select = "document.getElementById('open-scene')"
-    browser.evaluate(f"{select}.value = 'builtin:lab-mirror'; {select}.dispatchEvent(new Event('change'))")
+    before = browser.evaluate(name)
+
+    def check_waiting(what):
+        browser.wait("!document.getElementById('open-scene-waiting').hidden", f'{what}: the button that opens it')
+        time.sleep(0.3)
+        check(browser.evaluate(name) == before, f'{what} opens a scene')
+
+    def index_of(scene):
+        return browser.evaluate(f"[...{select}.options].findIndex(option => option.value === '{scene}')")
+
+    click_on(browser, '#open-scene')
+    time.sleep(0.3)  # until the list is open
+    for key in index_of('builtin:lab-mirror') * ['ArrowDown']:
+        browser.key(key)
+    time.sleep(0.3)
+    click_on(browser, '#search')
+    check_waiting('leaving an open list')
+    click_on(browser, '#open-scene-waiting')
+    browser.wait("document.activeElement.id === 'open-scene'", 'the focus, which the button had')
     browser.wait(f"{name}.includes('lab-mirror')", 'the chosen scene')
     settle(browser, 'the chosen scene')
+    before = browser.evaluate(name)
     browser.evaluate(f"{select}.focus()")
-    places = f"[{select}.selectedIndex, [...{select}.options].findIndex(o => o.value === 'builtin:cornell')]"
-    at, cornell = browser.evaluate(places)
-    for key in (cornell - at + 1) * ['ArrowDown'] + ['ArrowUp']:
+    cornell = index_of('builtin:cornell')
+    for key in (cornell + 1) * ['ArrowDown'] + ['ArrowUp']:
         browser.key(key)
-    check(browser.evaluate(places) == [cornell, cornell], f'keys stop at {browser.evaluate(places)}')
-    browser.wait("!document.getElementById('open-scene-note').hidden", 'the note how to open it')
-    time.sleep(0.3)
-    check('lab-mirror' in browser.evaluate(name), 'keys open scenes on the way')
+    at = browser.evaluate(f"{select}.selectedIndex")
+    check(at == cornell, f'keys stop at {at} instead of {cornell}')
+    check_waiting('a key')
+    leave_window(browser)
+    check_waiting('leaving the window')
+    browser.evaluate(f"{select}.focus()")
     browser.key('Enter')
     browser.wait(f"{name} === 'cornell'", 'the first scene')
     check(browser.evaluate(f"{select}.selectedIndex") == 0, 'the list does not go back to its start')

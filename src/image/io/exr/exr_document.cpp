@@ -2,10 +2,6 @@
 
 #include <Iex.h>
 #include <ImfChannelList.h>
-#include <ImfDeepScanLineInputPart.h>
-#include <ImfDeepScanLineOutputPart.h>
-#include <ImfDeepTiledInputPart.h>
-#include <ImfDeepTiledOutputPart.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
@@ -16,23 +12,21 @@
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
-#include <ImfPartType.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfStringVectorAttribute.h>
-#include <ImfTiledInputPart.h>
 #include <ImfTiledOutputFile.h>
 #include <ImfTiledOutputPart.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 
 #include "base/error.h"
 #include "base/files/file.h"
+#include "image/io/exr/exr_blocks.h"
 #include "image/io/exr/exr_header.h"
-#include "image/io/exr/exr_values.h"
+#include "image/io/exr/exr_planes.h"
 
 namespace limpid::image {
 namespace {
@@ -103,83 +97,6 @@ ExrPart describe(const ExrPartHeader& from) {
     return part;
 }
 
-/// A part's channels over its data window, in the file's types.
-class Planes {
-  public:
-    Planes() = default;
-    Planes(const Imath::Box2i& data, const std::vector<ExrPart::Channel>& channels)
-        : data_(data),
-          width_(static_cast<size_t>(data.max.x - data.min.x) + 1),
-          height_(static_cast<size_t>(data.max.y - data.min.y) + 1) {
-        // Not initialised: decoding fills them, and if it fails the memory is never touched.
-        for (const ExrPart::Channel& channel : channels)
-            bytes_.push_back(
-                std::make_unique_for_overwrite<std::byte[]>(width_ * height_ * sizeOf(channel.storage)));
-    }
-
-    bool empty() const { return bytes_.empty(); }
-
-    /// For reading and writing; the library changes no memory when it writes a file.
-    Imf::FrameBuffer frameBuffer(const std::vector<ExrPart::Channel>& channels) const {
-        Imf::FrameBuffer frame;
-        for (size_t c = 0; c < bytes_.size(); ++c) {
-            const size_t size = sizeOf(channels[c].storage);
-            // EXR addresses pixels by absolute coordinates, so its base pointer lies outside the plane. We
-            // compute it as an integer, because such a pointer is undefined in C++.
-            const auto base = reinterpret_cast<intptr_t>(bytes_[c].get());
-            const auto rowBytes = static_cast<intptr_t>(size * width_);
-            const intptr_t origin =
-                base - static_cast<intptr_t>(size) * data_.min.x - rowBytes * intptr_t{data_.min.y};
-            frame.insert(channels[c].name, Imf::Slice(toImf(channels[c].storage),
-                                                      reinterpret_cast<char*>(origin), size, size * width_));
-        }
-        return frame;
-    }
-
-    float get(size_t c, Storage storage, size_t index) const {
-        const std::byte* const at = bytes_[c].get() + index * sizeOf(storage);
-        if (storage == Storage::Half) return static_cast<float>(load<half>(at));
-        return storage == Storage::Uint ? static_cast<float>(load<uint32_t>(at)) : load<float>(at);
-    }
-
-    void set(size_t c, Storage storage, size_t index, float value) {
-        std::byte* const at = bytes_[c].get() + index * sizeOf(storage);
-        if (storage == Storage::Half) return store(at, toHalf(value));
-        if (storage == Storage::Uint) return store(at, toUint(value));
-        store(at, value);
-    }
-
-    /// Calls action(index in the plane, index in the display window) for each pixel of both windows.
-    template <typename Action>
-    void forShared(const Imath::Box2i& display, Action action) const {
-        const size_t displayWidth = static_cast<size_t>(display.max.x - display.min.x) + 1;
-        for (int y = std::max(data_.min.y, display.min.y); y <= std::min(data_.max.y, display.max.y); ++y) {
-            const size_t row = static_cast<size_t>(y - data_.min.y) * width_;
-            const size_t displayRow = static_cast<size_t>(y - display.min.y) * displayWidth;
-            for (int x = std::max(data_.min.x, display.min.x); x <= std::min(data_.max.x, display.max.x); ++x)
-                action(row + static_cast<size_t>(x - data_.min.x),
-                       displayRow + static_cast<size_t>(x - display.min.x));
-        }
-    }
-
-  private:
-    static size_t sizeOf(Storage storage) { return storage == Storage::Half ? 2 : 4; }
-    template <typename T>
-    static T load(const std::byte* at) {
-        T value;
-        std::memcpy(&value, at, sizeof value);
-        return value;
-    }
-    template <typename T>
-    static void store(std::byte* at, T value) {
-        std::memcpy(at, &value, sizeof value);
-    }
-
-    Imath::Box2i data_;
-    size_t width_ = 0, height_ = 0;
-    std::vector<std::unique_ptr<std::byte[]>> bytes_;
-};
-
 void writeTiles(auto&& target, const Imf::FrameBuffer& frame) {
     target.setFrameBuffer(frame);
     target.writeTiles(0, target.numXTiles() - 1, 0, target.numYTiles() - 1);
@@ -190,56 +107,6 @@ void writeRows(auto&& target, const Imf::Header& header, const Imf::FrameBuffer&
     target.writePixels(header.dataWindow().max.y - header.dataWindow().min.y + 1);
 }
 
-/// Checks the sizes in a deep block: copying trusts them, however large, and reads other memory if their sum
-/// overflows. `read` is rawPixelData() or rawTileData(), and the block begins with `headerBytes`.
-template <typename Read>
-void checkDeepBlock(size_t fileBytes, size_t headerBytes, Read read) {
-    uint64_t size = 0;
-    read(nullptr, size);  // returns the size
-    if (size < headerBytes || size > fileBytes)
-        throw std::runtime_error("it has a deep block of absurd size");
-    std::vector<char> block(size);
-    read(block.data(), size);
-    std::array<uint64_t, 2> sizes{};  // of the table of sample counts, and of the samples
-    std::memcpy(sizes.data(), block.data() + headerBytes - 24, sizeof sizes);
-    const uint64_t content = size - headerBytes;
-    if (sizes[0] > content || sizes[1] != content - sizes[0])
-        throw std::runtime_error("it has a damaged deep block");
-}
-
-void checkDeepBlocks(Imf::DeepScanLineInputPart part, size_t fileBytes) {
-    const Imath::Box2i data = part.header().dataWindow();
-    for (int y = data.min.y; y <= data.max.y; ++y)
-        checkDeepBlock(fileBytes, 28, [&](char* to, uint64_t& size) { part.rawPixelData(y, to, size); });
-}
-
-void checkDeepBlocks(Imf::DeepTiledInputPart part, size_t fileBytes) {
-    for (int ly = 0; ly < part.numYLevels(); ++ly) {
-        for (int lx = 0; lx < part.numXLevels(); ++lx) {
-            if (!part.isValidLevel(lx, ly)) continue;
-            for (int i = 0; i < part.numXTiles(lx) * part.numYTiles(ly); ++i) {
-                int x = i % part.numXTiles(lx), y = i / part.numXTiles(lx);
-                checkDeepBlock(fileBytes, 40,
-                               [&](char* to, uint64_t& size) { part.rawTileData(x, y, lx, ly, to, size); });
-            }
-        }
-    }
-}
-
-/// Copies the compressed blocks as they are.
-void copyBlocks(Imf::MultiPartInputFile& from, Imf::MultiPartOutputFile& to, int index,
-                const Imf::Header& header, size_t fileBytes) {
-    const bool deep = header.hasType() && Imf::isDeepData(header.type());
-    const bool tiled = header.hasTileDescription();
-    const auto copy = [&]<typename In, typename Out>(In in, Out out) { out.copyPixels(in); };
-    if (deep && tiled) checkDeepBlocks(Imf::DeepTiledInputPart(from, index), fileBytes);
-    if (deep && !tiled) checkDeepBlocks(Imf::DeepScanLineInputPart(from, index), fileBytes);
-    if (deep && tiled) return copy(Imf::DeepTiledInputPart(from, index), Imf::DeepTiledOutputPart(to, index));
-    if (deep) return copy(Imf::DeepScanLineInputPart(from, index), Imf::DeepScanLineOutputPart(to, index));
-    if (tiled) return copy(Imf::TiledInputPart(from, index), Imf::TiledOutputPart(to, index));
-    copy(Imf::InputPart(from, index), Imf::OutputPart(to, index));
-}
-
 }  // namespace
 
 struct ExrDocument::Content {
@@ -247,8 +114,8 @@ struct ExrDocument::Content {
     std::vector<std::byte> bytes;  ///< empty once the only part has changed
     std::vector<ExrPartHeader> headers;
     std::vector<ExrPart> parts;
-    std::vector<Planes> planes;  ///< of each part; empty until a channel is used
-    std::vector<bool> changed;   ///< of each part: pixels
+    std::vector<ExrPlanes> planes;  ///< of each part; empty until a channel is used
+    std::vector<bool> changed;      ///< of each part: pixels
     /// Attached channels: they come after the file's own parts, and are not written.
     std::vector<LayeredImage> attached;
 
@@ -264,7 +131,7 @@ struct ExrDocument::Content {
         return static_cast<size_t>(found - channels.begin());
     }
 
-    Planes& decoded(size_t part) {
+    ExrPlanes& decoded(size_t part) {
         if (!planes[part].empty()) return planes[part];
         const ExrPart& description = parts[part];
         if (!description.unreadable.empty())
@@ -282,7 +149,7 @@ struct ExrDocument::Content {
             throw InputError(name, fmt::format("has a part of {} million pixels with {} bytes each, which is "
                                                "too much",
                                                pixels / 1000000, frame.bytesPerPixel));
-        Planes decodedPlanes(data, parts[index].channels);
+        ExrPlanes decodedPlanes(data, parts[index].channels);
         ExrMemoryStream stream(bytes, name.string());
         // Do not reconstruct a damaged chunk table: an incomplete file is an error, not a picture with holes.
         Imf::MultiPartInputFile file(stream, Imf::globalThreadCount(), false);
@@ -334,7 +201,7 @@ struct ExrDocument::Content {
             const auto index = static_cast<int>(i);
             const Imf::FrameBuffer frame = planes[i].frameBuffer(parts[i].channels);
             if (!changed[i])
-                copyBlocks(from, to, index, toWrite[i], bytes.size());
+                copyExrBlocks(from, to, index, toWrite[i], bytes.size());
             else if (toWrite[i].hasTileDescription())
                 writeTiles(Imf::TiledOutputPart(to, index), frame);
             else
@@ -365,7 +232,7 @@ ExrDocument ExrDocument::of(const LayeredImage& image, const fs::path& name) {
     return document;
 }
 
-void ExrDocument::attach(const std::string& part, const LayeredImage& image, const fs::path& name) {
+void ExrDocument::attach(const std::string& part, LayeredImage image, const fs::path& name) {
     if (image.width != width() || image.height != height())
         throw InputError(name, fmt::format("has {}x{} pixels, but {} has {}x{}", image.width, image.height,
                                            content_->name.string(), width(), height()));
@@ -374,7 +241,14 @@ void ExrDocument::attach(const std::string& part, const LayeredImage& image, con
     description.attached = true;
     for (const Channel& channel : image.channels)
         description.channels.push_back({channel.name, channel.storage});
-    content_->attached.push_back(image);
+    content_->attached.push_back(std::move(image));
+}
+
+void ExrDocument::fill(size_t part, std::string_view channel, std::vector<float> values) {
+    const size_t c = content_->channelOf(part, channel);
+    if (!content_->isAttached(part)) throw Error("only attached channels are filled");
+    if (values.size() != size_t{width()} * height()) throw Error("the channel has another size");
+    content_->attached[part - content_->headers.size()].channels[c].values = std::move(values);
 }
 
 ExrDocument ExrDocument::read(const fs::path& path) {
@@ -446,11 +320,12 @@ void ExrDocument::read(size_t part, std::string_view channel, std::span<float> t
         throw Error("the target is too small");
     if (content_->isAttached(part)) {
         const auto& values = content_->attached[part - content_->headers.size()].channels[c].values;
+        if (values.empty()) throw Error(fmt::format("the attached channel '{}' has no values", channel));
         for (size_t p = 0; p < values.size(); ++p) to[stride * p] = values[p];
         return;
     }
     const Storage storage = content_->parts[part].channels[c].storage;
-    const Planes& planes = content_->decoded(part);
+    const ExrPlanes& planes = content_->decoded(part);
     planes.forShared(content_->display(), [&](size_t inPlane, size_t inDisplay) {
         to[stride * inDisplay] = planes.get(c, storage, inPlane);
     });
@@ -461,7 +336,7 @@ void ExrDocument::replace(size_t part, std::string_view channel, std::span<const
     if (values.size() != size_t{width()} * height()) throw Error("the channel has another size");
     if (content_->isAttached(part)) throw Error("an attached channel cannot be replaced");
     const Storage storage = content_->parts[part].channels[c].storage;
-    Planes& planes = content_->decoded(part);
+    ExrPlanes& planes = content_->decoded(part);
     planes.forShared(content_->display(), [&](size_t inPlane, size_t inDisplay) {
         planes.set(c, storage, inPlane, values[inDisplay]);
     });

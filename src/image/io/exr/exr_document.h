@@ -62,8 +62,10 @@ class ExrDocument {
     std::span<const ExrPart> parts() const;
 
     /// Lets the image's channels be read like those of a part of this name. They are not written, and cannot
-    /// be replaced. Throws InputError(name) if the image has another size.
-    void attach(const std::string& part, const LayeredImage& image, const std::filesystem::path& name);
+    /// be replaced. Channels may come without values, which fill() gives those that will be read. Throws
+    /// InputError(name) if the image has another size.
+    void attach(const std::string& part, LayeredImage image, const std::filesystem::path& name);
+    void fill(size_t part, std::string_view channel, std::vector<float> values);
 
     /// Decodes the part, which values() and replace() would do. Afterwards several threads may call values()
     /// of it. Throws as values() does.
@@ -77,7 +79,7 @@ class ExrDocument {
     uint64_t pixelsOutside(size_t part) const;
 
     /// Returns width * height values; Uint as exact integers below 2^24. Throws InputError if the part cannot
-    /// be read, and Error if there is no such channel.
+    /// be read, and Error if there is no such channel, or an attached one has no values.
     std::vector<float> values(size_t part, std::string_view channel);
 
     /// The same into to[0], to[stride] and so on. Pixels outside the data window are left as they are.

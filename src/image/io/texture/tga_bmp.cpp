@@ -18,12 +18,12 @@ using Bytes = std::span<const std::byte>;
 
 constexpr size_t tgaHeaderBytes = 18;
 
-uint32_t byteAt(Bytes bytes, size_t i) {
+uint32_t numberAt(Bytes bytes, size_t i) {
     return std::to_integer<uint32_t>(bytes[i]);
 }
 
 uint32_t littleEndian16(Bytes bytes, size_t i) {
-    return byteAt(bytes, i) | byteAt(bytes, i + 1) << 8;
+    return numberAt(bytes, i) | numberAt(bytes, i + 1) << 8;
 }
 
 uint32_t littleEndian32(Bytes bytes, size_t i) {
@@ -43,10 +43,10 @@ struct TgaHeader {
 };
 
 TgaHeader tgaHeader(Bytes bytes) {
-    const size_t paletteBytes = size_t{littleEndian16(bytes, 5)} * ((byteAt(bytes, 7) + 7) / 8);
-    const bool hasPalette = byteAt(bytes, 1) == 1;
-    return {byteAt(bytes, 2), littleEndian16(bytes, 12), littleEndian16(bytes, 14), byteAt(bytes, 16),
-            tgaHeaderBytes + byteAt(bytes, 0) + (hasPalette ? paletteBytes : 0)};
+    const size_t paletteBytes = size_t{littleEndian16(bytes, 5)} * ((numberAt(bytes, 7) + 7) / 8);
+    const bool hasPalette = numberAt(bytes, 1) == 1;
+    return {numberAt(bytes, 2), littleEndian16(bytes, 12), littleEndian16(bytes, 14), numberAt(bytes, 16),
+            tgaHeaderBytes + numberAt(bytes, 0) + (hasPalette ? paletteBytes : 0)};
 }
 
 /// Walks the packets: each has a count, and either one pixel to repeat or that many pixels.
@@ -55,7 +55,7 @@ void checkRuns(Bytes bytes, const TgaHeader& h, const fs::path& name) {
     uint64_t left = uint64_t{h.width} * h.height;
     for (size_t at = h.pixels; left > 0;) {
         if (at >= bytes.size()) failCutOff(name, "TGA");
-        const uint32_t packet = byteAt(bytes, at);
+        const uint32_t packet = numberAt(bytes, at);
         const uint64_t count = (packet & 127) + 1;
         at += 1 + ((packet & 128) != 0 ? pixelBytes : count * pixelBytes);
         if (at > bytes.size()) failCutOff(name, "TGA");
@@ -97,15 +97,15 @@ PictureSize checkBmp(Bytes bytes, const fs::path& name) {
 
 bool looksLikeTga(Bytes bytes) {
     if (bytes.size() < tgaHeaderBytes) return false;
-    const uint32_t palette = byteAt(bytes, 1), kind = byteAt(bytes, 2) & 7, bits = byteAt(bytes, 16);
-    if (byteAt(bytes, 2) > 11 || (byteAt(bytes, 2) & 4) != 0 || palette > 1) return false;
+    const uint32_t palette = numberAt(bytes, 1), kind = numberAt(bytes, 2) & 7, bits = numberAt(bytes, 16);
+    if (numberAt(bytes, 2) > 11 || (numberAt(bytes, 2) & 4) != 0 || palette > 1) return false;
     if (kind == 1) return palette == 1 && (bits == 8 || bits == 16);
     if (kind == 2) return bits == 15 || bits == 16 || bits == 24 || bits == 32;
     return kind == 3 && (bits == 8 || bits == 16);
 }
 
 bool looksLikeBmp(Bytes bytes) {
-    return bytes.size() >= 18 && byteAt(bytes, 0) == 'B' && byteAt(bytes, 1) == 'M';
+    return bytes.size() >= 18 && numberAt(bytes, 0) == 'B' && numberAt(bytes, 1) == 'M';
 }
 
 PictureSize checkTgaOrBmp(Bytes bytes, const fs::path& name) {
