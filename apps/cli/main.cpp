@@ -15,6 +15,7 @@
 #include "cli/cluster/session.h"
 #include "cli/console/help_text.h"
 #include "commands.h"
+#include "scene/load/load.h"
 
 namespace limpid::cli {
 namespace {
@@ -53,8 +54,7 @@ void refuseNonFinite(CLI::App& app) {
 
 /// True for a file of a scene, or a built-in one.
 bool isScene(const std::string& word) {
-    return word.starts_with("builtin:") || word.ends_with(".gltf") || word.ends_with(".glb") ||
-           word.ends_with(".obj");
+    return word.starts_with("builtin:") || scene::isSceneFile(word);
 }
 
 /// The words of the command line, in reverse as CLI11 takes them: `limpid SCENE` is `limpid view SCENE`.
@@ -70,6 +70,11 @@ std::string commandIn(const std::vector<std::string>& words) {
     if (words.empty()) return "";
     const bool two = words.back() == "bench" && words.size() > 1;
     return two ? words.back() + " " + words[words.size() - 2] : words.back();
+}
+
+bool asksForHelp(const std::vector<std::string>& words) {
+    return std::ranges::any_of(words,
+                               [](const std::string& word) { return word == "--help" || word == "-h"; });
 }
 
 int run(int argc, char** argv) {
@@ -94,7 +99,7 @@ int run(int argc, char** argv) {
     refuseNonFinite(app);
     try {
         std::vector<std::string> words = wordsOf(argc, argv);
-        joinCluster(commandIn(words));
+        joinCluster(commandIn(words), asksForHelp(words));
         app.parse(words);
         return leaveCluster(static_cast<int>(ExitCode::Done));
     } catch (const CLI::ParseError& error) {

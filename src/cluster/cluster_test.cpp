@@ -288,6 +288,15 @@ TEST(Ranks, AFaultOfTheFirstEndsTheWork) {
     EXPECT_LT(work.finished, 1000u);
 }
 
+TEST(Launcher, TheTimeOfSilenceIsANumberOfSeconds) {
+    EXPECT_EQ(patienceOf(nullptr), std::chrono::minutes(10));
+    EXPECT_EQ(patienceOf(""), std::chrono::minutes(10));
+    EXPECT_EQ(patienceOf("2.5"), milliseconds(2500));
+    EXPECT_EQ(patienceOf("1e9"), std::chrono::seconds(1'000'000'000));
+    for (const char* wrong : {"soon", "60s", " 60", "nan", "inf", "-5", "0", "1", "1e10", "1e999"})
+        EXPECT_THROW(patienceOf(wrong), UsageError) << wrong;
+}
+
 TEST(Launcher, IsKnownByItsVariables) {
     const auto find = [](const std::map<std::string, std::string>& variables) {
         return findLaunch([&](const char* name) {

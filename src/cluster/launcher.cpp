@@ -3,7 +3,9 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cstdlib>
+#include <string_view>
 
 #include "base/error.h"
 
@@ -48,6 +50,18 @@ Launch findLaunch(const std::function<const char*(const char*)>& variable) {
         number("SLURM_STEP_NUM_TASKS", launch.size);
     }
     return launch;
+}
+
+std::chrono::milliseconds patienceOf(const char* timeout) {
+    const std::string_view text = timeout ? timeout : "";
+    if (text.empty()) return std::chrono::minutes(10);
+    double seconds = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+    const bool isNumber = error == std::errc{} && end == text.data() + text.size();
+    if (!isNumber || !(seconds >= 2.0 && seconds <= 1e9))
+        throw UsageError(
+            fmt::format("LIMPID_CLUSTER_TIMEOUT: '{}' is no number of seconds from 2 to 1e9", text));
+    return std::chrono::milliseconds(static_cast<int64_t>(seconds * 1000.0));
 }
 
 Transport& startTransport(const Launch& launch) {

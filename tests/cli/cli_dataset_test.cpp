@@ -58,8 +58,39 @@ TEST_F(CliDatasetTest, KeepsWhatIsWholeAndMakesAnewWhatIsDamaged) {
     EXPECT_TRUE(fs::exists(path("data/examples.00002.safetensors")));
     EXPECT_EQ(file("data", 0), first);
     EXPECT_EQ(fs::last_write_time(path("data/examples.00000.safetensors")), time);
-    expect(command("data", "--seed 1"), 2, "with other parameters");
+    expect(command("data", "--seed 1"), 2, "is of another dataset: seed is 0, not 1");
     EXPECT_EQ(file("data", 0), first);
+}
+
+/// Its files would be of two scenes.
+TEST_F(CliDatasetTest, ASceneThatHasChangedMakesAnotherDataset) {
+    const auto putScene = [&](const std::string& height, const std::string& color) {
+        put("a.obj", "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 " + height + " 0\nf 1 2 3\n");
+        put("a.mtl", "newmtl m\nKd " + color + " 0 0\nmap_Kd a.png\n");
+    };
+    const std::string dataset =
+        "dataset --device cpu --rooms 0 --width 8 --height 8 --samples 1 "
+        "--reference-samples 2 --scene " +
+        path("a.obj") + " -o '" + path("data") + "'";
+    put("a.png", "no picture, so that the triangle has a plain colour");
+    putScene("1", "1");
+    expect(dataset, 0, "manifest");
+    expect(dataset, 0, "manifest");
+    const auto manifest = nlohmann::json::parse(get("data/manifest.json"));
+    EXPECT_NE(manifest["dataset"]["limpid"].get<std::string>().find('.'), std::string::npos);
+    const auto& files = manifest["files"][0]["examples"][0]["files"];
+    EXPECT_EQ(files.size(), 3u) << files;
+    EXPECT_EQ(files["a.mtl"].get<std::string>().size(), 16u) << files;
+    putScene("2", "1");
+    expect(dataset, 2, "has changed since: a.obj");
+    putScene("1", "0.5");
+    expect(dataset, 2, "has changed since: a.mtl");
+    putScene("1", "1");
+    expect(dataset, 0, "manifest");
+    put("a.png", "another one");
+    expect(dataset, 2, "has changed since: a.png");
+    fs::remove(path("a.png"));
+    expect(dataset, 2, "has changed since: a.png");
 }
 
 TEST_F(CliDatasetTest, SaysWhatIsWrong) {
@@ -72,6 +103,7 @@ TEST_F(CliDatasetTest, SaysWhatIsWrong) {
     expect("dataset --device cpu --rooms 100 --scene nothing.gltf -o '" + path("data") + "'", 3,
            "nothing.gltf: does not exist");
     EXPECT_FALSE(fs::exists(path("data"))) << "found before the rooms are rendered";
+    expect("dataset --device cpu --width 16384 --height 16384 -o '" + path("data") + "'", 2, " in an image");
     put("file", "");
     expect("dataset -o '" + path("file/data") + "'", 1, "cannot be made");
 }

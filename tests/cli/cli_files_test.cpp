@@ -107,6 +107,30 @@ TEST_F(CliFilesTest, AnEnvironmentMapIsNoOutput) {
     EXPECT_EQ(run(with + path("a.exr")).code, 0);
 }
 
+TEST_F(CliFilesTest, AFileOfTheSceneIsNoOutput) {
+    put("a.obj", std::string("mtllib a.mtl\nusemtl m\n") + triangle);
+    const std::string render = "render " + path("a.obj") + tiny + "-o ";
+    // The texture's own picture, and one that is a link to it.
+    put("a.mtl", "newmtl m\nmap_Kd wood1.png\n");
+    ASSERT_EQ(run(std::string("render builtin:cornell") + tiny + "-o " + path("wood1.png")).code, 0);
+    fs::create_symlink("wood1.png", folder_ / "link.png");
+    fs::copy_file(folder_ / "wood1.png", folder_ / "b.preview.png");
+    const std::string wood = get("wood1.png"), fault = "is a file of the scene";
+    for (const char* output : {"wood1.png", "./wood1.png", "link.png"})
+        expect(render + path(output), 2, fault);
+    expect(render + path("wood%d.png") + " --frames 3", 2, fault);
+    EXPECT_EQ(run(render + path("wood%d.png") + " --frames 1").code, 0) << "which is frame 0";
+    EXPECT_EQ(get("wood1.png"), wood);
+    put("a.mtl", "newmtl m\nmap_Kd b.preview.png\n");
+    expect(render + path("b.exr") + " --preview", 2, fault);
+    EXPECT_EQ(run(render + path("b.exr")).code, 0);
+    EXPECT_EQ(run(render + path("wood1.png")).code, 0) << "it is no texture any more";
+    // Whatever its name is.
+    put("a.mtl.exr", "newmtl m\n");
+    put("a.obj", std::string("mtllib a.mtl.exr\n") + triangle);
+    expect(render + path("a.mtl.exr"), 2, fault);
+}
+
 TEST_F(CliFilesTest, AnOutputThatIsASymbolicLinkIsFollowed) {
     fs::create_directories(folder_ / "there");
     put("there/real.png", "old");

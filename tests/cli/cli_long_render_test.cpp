@@ -2,6 +2,7 @@
 // undisturbed run.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include <chrono>
 #include <cmath>
@@ -274,6 +275,41 @@ TEST_F(CliLongRenderTest, ASequenceOutOfTimeHasWholeFramesOnly) {
     EXPECT_EQ(get("2.exr"), "not touched");
 }
 
+/// With a limit that a PNG keeps and a checkpoint does not, whose header has the scene's long name.
+TEST_F(CliLongRenderTest, ACheckpointThatCannotBeWrittenDoesNotLoseThePicture) {
+    const std::string scene(200, 'a');
+    put(scene + ".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const auto onAFullDisk = [&](const std::string& more, const std::string& output) {
+        // Ignores SIGXFSZ, so that the write fails as on a full disk.
+        return runProgram(
+            fmt::format("bash -c 'trap \"\" XFSZ; ulimit -f 1; exec \"{}\" render {} --width 8 "
+                        "--height 8 --device cpu {} --checkpoint {} -o {}'",
+                        LIMPID_PROGRAM, path(scene + ".obj"), more, path("a.ck"), output));
+    };
+    const std::string fault = "a.ck: cannot be written", earlier = "goes on from an earlier state";
+    const std::string begun = "--spp 130 --time-limit 0.001";
+    const Result part = onAFullDisk(begun, path("part.png"));
+    EXPECT_EQ(part.code, 1) << part.output;
+    EXPECT_THAT(part.output, testing::HasSubstr(fault));
+    EXPECT_THAT(part.output, testing::HasSubstr("the work since the one before is lost"));
+    EXPECT_THAT(part.output, testing::Not(testing::HasSubstr("--resume")))
+        << "there is nothing to go on from";
+    EXPECT_EQ(image::readPngOrJpeg(path("part.png")).width, 8u);
+    EXPECT_FALSE(fs::exists(path("a.ck")));
+    expect("render " + path(scene + ".obj") + " --width 8 --height 8 --device cpu " + begun +
+               " --checkpoint " + path("a.ck") + " -o " + path("part.png"),
+           0, "--resume makes the rest");
+    const std::string kept = get("a.ck");
+    // Of the blocks, only the first is followed by an attempt: the next one is due after 20 s.
+    const Result whole = onAFullDisk("--spp 130 --resume", path("whole.png"));
+    EXPECT_EQ(whole.code, 0) << whole.output;
+    EXPECT_THAT(whole.output, testing::HasSubstr(fault));
+    EXPECT_THAT(whole.output, testing::HasSubstr(earlier)) << "of the last attempt";
+    EXPECT_THAT(whole.output, testing::HasSubstr(": 130 samples"));
+    EXPECT_EQ(image::readPngOrJpeg(path("whole.png")).width, 8u);
+    EXPECT_EQ(get("a.ck"), kept);
+}
+
 TEST_F(CliLongRenderTest, ACheckpointThatDoesNotFitIsRefused) {
     const std::string ck = "--checkpoint " + path("a.ck") + " -o " + path("a.exr");
     const std::string scene = "render builtin:cornell --spp 64 " + ck + small;
@@ -306,12 +342,12 @@ TEST_F(CliLongRenderTest, ACheckpointThatDoesNotFitIsRefused) {
 /// The finished frames keep their look; a still gets the new one.
 TEST_F(CliLongRenderTest, FramesOfOneSequenceLookAlike) {
     const auto with = [&](const char* ck) { return "--spp 1 --resume --checkpoint " + path(ck) + small; };
-    const std::string sequence =
-        "render builtin:cornell-moving --frames 2 -o " + path("%d.png ") + with("s.ck");
+    const std::string moving = "render builtin:cornell-moving --frames 2 -o ";
+    const std::string sequence = moving + path("%d.png ") + with("s.ck");
     expectDone(sequence);
     expect(sequence + "--exposure 1", 3, "look different: --exposure is auto, not 1");
     expect(sequence + "--tone-curve agx", 3, "--tone-curve is standard, not agx");
-    expect(sequence + "--float", 3, "--float is false, not true");
+    expect(moving + path("%d.exr ") + with("s.ck") + "--float", 3, "--float is false, not true");
     expectDone(sequence);
     const std::string still = "render builtin:cornell -o " + path("a.png ") + with("a.ck");
     expectDone(still);

@@ -103,7 +103,14 @@ TEST_F(CliQualityTest, WhatCannotBeIsSaidBeforeAnythingIsRendered) {
     expect(options("--scene builtin:cornell --scene none.glb"), 3, "none.glb: does not exist");
     expect(options("--scene builtin:cornell --env none.hdr"), 3, "none.hdr: does not exist");
     expect(options("--camera-path none.json"), 3, "none.json");
-    expect(options("--paths-folder " + path("none")), 3, "is no folder");
+    fs::create_directories(folder_ / "scenes/a");
+    put("scenes/a/a.gltf", "");
+    const std::string paths = "--paths-folder " + path("none");
+    expect(options("--scenes-folder " + path("scenes ") + paths), 3, "is no folder");
+    expect(options(paths), 2, "--paths-folder goes with --scenes-folder");
+    for (const char* option : {"--env a.hdr", "--camera-path dolly"})
+        for (const char* lab : {" --lab", " --quick"})
+            expect(std::string("bench quality ") + option + lab, 2, "the sequences of --lab have their own");
     put("file", "");
     for (const char* option : {"--out ", "--reference-folder "})
         expect(options(option + path("file")), 1, "cannot be made");

@@ -16,6 +16,11 @@ TEST_F(CliTest, WrongUsageIsExitCode2) {
     expect("render builtin:cornell -o " + path("a.bmp") + tiny, 2, ".exr or .png");
     expect("render builtin:cornell -o " + path("a.png") + " --width 0", 2, "--width");
     expect("render builtin:cornell -o " + path("a.png") + " --width 99999999999", 2, "--width");
+    // Found before the scene is loaded, and the second one by the device.
+    expect("render none.gltf -o " + path("a.png") + " --width 65535 --height 65535", 2, "at most 268435456");
+    expect("render none.gltf -o " + path("a.png") + " --width 65535 --height 1 --device cpu", 2, " a side");
+    expect("render none.gltf -o " + path("a.png") + " --width 16384 --height 16384 --device cpu", 2,
+           " in an image");
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--set pathtrace.max_depth=x", 2,
            "whole number");
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--set pathtrace.max_depth=-1", 2,
@@ -27,6 +32,13 @@ TEST_F(CliTest, WrongUsageIsExitCode2) {
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--dump none", 2, "its passes are");
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--env a.hdr --background 1,1,1", 2,
            "give one of them");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--float", 2, "--float needs an .exr");
+    for (const std::string option : {"--max-depth ", "--set pathtrace.max_depth="}) {
+        const std::string deep = "render builtin:cornell -o " + path("a.png") + tiny + option + "2 ";
+        for (const char* integrator : {"ao", "gbuffer", "preview"})
+            expect(deep + "--integrator " + integrator, 2, " is for --integrator path and direct");
+        expect(deep + "--integrator direct", 2, "--integrator direct has one bounce");
+    }
     for (const char* camera : {"--camera 0", "--eye 0,1,3 --target 0,1,0", "--fov 40"})
         expect("render builtin:cornell -o " + path("a.png") + tiny + "--camera-path p.json " + camera, 2,
                "has its own cameras");
@@ -60,6 +72,31 @@ TEST_F(CliTest, UnreadableInputIsExitCode3AndNamesFileAndFault) {
     expect("render builtin:cornell --env " + path("bad.hdr") + " -o " + path("a.png") + tiny, 3, "bad.hdr");
     expect("compare " + path("x.exr") + " " + path("y.exr"), 3, "x.exr");
     EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+/// The faults are only found after the warnings.
+TEST_F(CliTest, ALookThatTheOutputDoesNotHaveIsWarnedOf) {
+    const auto outputOf = [&](const std::string& rest) {
+        const Result result = run("render " + path("none.gltf") + tiny + "-o " + path(rest));
+        EXPECT_EQ(result.code, 3) << result.output;
+        EXPECT_NE(result.output.find("none.gltf"), std::string::npos) << result.output;
+        return result.output;
+    };
+    const auto expectWarning = [&](const std::string& rest, const std::string& part) {
+        const std::string output = outputOf(rest);
+        EXPECT_NE(output.find(part), std::string::npos) << output;
+    };
+    expectWarning("a.exr --exposure 1", "--exposure has no effect: an .exr is linear");
+    expectWarning("a.%d.exr --tone-curve agx", "--tone-curve has no effect: an .exr is linear");
+    expectWarning("a.png --exposure 1 --integrator ao", "the values of --integrator ao are shown");
+    expectWarning("a.exr --exposure 1 --tone-curve agx", "--exposure and --tone-curve have no effect");
+    for (const std::string used :
+         {"a.exr --exposure 1 --preview", "a.sums --shard 1/2 --exposure 1", "a.exr"})
+        EXPECT_EQ(outputOf(used).find(" no effect"), std::string::npos) << used;
+    // 'limpid merge' uses them.
+    const std::string checkpoint = " --checkpoint " + path("a.ck");
+    for (const std::string used : {"a.exr --exposure 1", "a.png --float"})
+        EXPECT_EQ(outputOf(used + checkpoint).find(" no effect"), std::string::npos) << used;
 }
 
 TEST_F(CliTest, AnOutputThatCannotBeWrittenIsExitCode1) {

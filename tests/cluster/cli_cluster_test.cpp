@@ -318,6 +318,8 @@ TEST_F(CliClusterTest, WhatSeveralCannotDoIsRefused) {
     expectRefused(std::string(still) + "--shard 1/2 -o " + path("a.sums"), "--shard: ");
     expectRefused("render builtin:cornell-moving --frames 2 --denoiser svgf -o " + path("%d.exr"),
                   "build on each other");
+    expectRefused("merge " + path("a.sums") + " -o " + path("a.exr"), "limpid merge is for one process");
+    expectRefused("compare a.exr b.exr --error-map " + path("a.png"), "limpid compare is for one process");
 }
 
 /// So that the packages do not need MPI.
@@ -328,6 +330,28 @@ TEST_F(CliClusterTest, TheProgramIsNotLinkedToMpi) {
     const Result module = runProgram(std::string("LD_TRACE_LOADED_OBJECTS=1 '") + LIMPID_PROGRAM +
                                      "' --version; ldd '" + LIMPID_MPI_MODULE + "'");
     EXPECT_NE(module.output.find("libmpi"), std::string::npos) << module.output;
+}
+
+/// Needs no MPI: the variables of a launcher are enough.
+TEST_F(CliTest, OneOfSeveralProcessesRefusesWhatItWouldRepeat) {
+    const auto asProcess = [](int rank, const std::string& variables, const std::string& arguments) {
+        return runProgram(fmt::format("OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK={} {} '{}' {}", rank,
+                                      variables, LIMPID_PROGRAM, arguments));
+    };
+    for (const char* command : {"merge none.sums -o none.exr", "compare none.exr none.exr"}) {
+        const Result refused = asProcess(0, "", command);
+        EXPECT_EQ(refused.code, 2) << refused.output;
+        EXPECT_NE(refused.output.find("is for one process"), std::string::npos) << refused.output;
+        for (const char* alone : {"LIMPID_MPI=0", "OMPI_COMM_WORLD_SIZE=0"})
+            EXPECT_EQ(asProcess(0, alone, command).code, 3) << "the file does not exist";
+        EXPECT_EQ(asProcess(0, "", std::string(command) + " --help").code, 0);
+    }
+    const Result other = asProcess(1, "", "merge none.sums -o none.exr");
+    EXPECT_EQ(other.code, 2);
+    EXPECT_EQ(other.output, "") << "process 0 says it";
+    const Result impatient = asProcess(0, "LIMPID_CLUSTER_TIMEOUT=-5", "render builtin:cornell -o a.exr");
+    EXPECT_EQ(impatient.code, 2) << impatient.output;
+    EXPECT_NE(impatient.output.find("LIMPID_CLUSTER_TIMEOUT: '-5'"), std::string::npos) << impatient.output;
 }
 
 /// Needs no MPI: the variables of a launcher are enough.

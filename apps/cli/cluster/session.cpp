@@ -23,19 +23,9 @@
 namespace limpid::cli {
 namespace {
 
-constexpr std::chrono::milliseconds defaultPatience{600'000};
-
 std::unique_ptr<cluster::Ranks>& joined() {
     static std::unique_ptr<cluster::Ranks> instance;
     return instance;
-}
-
-/// LIMPID_CLUSTER_TIMEOUT, seconds.
-std::chrono::milliseconds patience() {
-    const char* const text = std::getenv("LIMPID_CLUSTER_TIMEOUT");
-    const double seconds = text ? std::atof(text) : 0.0;
-    return seconds > 0.0 ? std::chrono::milliseconds(static_cast<int64_t>(seconds * 1000.0))
-                         : defaultPatience;
 }
 
 int coresAllowed() {
@@ -60,22 +50,46 @@ void shareCores(const cluster::Place& place) {
     ::setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 0);
 }
 
+template <size_t N>
+bool isOneOf(const std::array<const char*, N>& commands, const std::string& command) {
+    return std::ranges::find(commands, command) != commands.end();
+}
+
+/// Throws UsageError for a command that several processes would each do as a whole, and write the same files.
+void refuseForSeveral(const cluster::Launch& launch, const std::string& command) {
+    constexpr std::array alone{"merge", "compare"};
+    if (launch.size <= 1 || !isOneOf(alone, command)) return;  // 0: the launcher does not say
+    throw UsageError(fmt::format(
+        "limpid {} is for one process, and a launcher such as mpirun started several: set LIMPID_MPI=0 if "
+        "each process is to work for itself",
+        command));
+}
+
+void join(const cluster::Launch& launch) {
+    const std::chrono::milliseconds patience = cluster::patienceOf(std::getenv("LIMPID_CLUSTER_TIMEOUT"));
+    try {
+        joined() = std::make_unique<cluster::Ranks>(cluster::startTransport(launch), patience);
+    } catch (const Error&) {
+        if (launch.size != 1) throw;
+    }
+}
+
 }  // namespace
 
-void joinCluster(const std::string& command) {
+void joinCluster(const std::string& command, bool help) {
     constexpr std::array shared{"render", "denoise", "dataset", "bench quality"};
-    if (std::ranges::find(shared, command) == shared.end()) return;
     const cluster::Launch launch = cluster::findLaunch([](const char* name) { return std::getenv(name); });
     if (!launch.launched) return;
     try {
-        joined() = std::make_unique<cluster::Ranks>(cluster::startTransport(launch), patience());
-    } catch (const Error&) {
-        if (launch.size == 1) return;
+        if (!help) refuseForSeveral(launch, command);
+        if (isOneOf(shared, command)) join(launch);
+    } catch (const Error& fault) {
         if (launch.rank == 0) throw;
         // Process 0 says it. mpirun ends all when the first one ends.
         std::this_thread::sleep_for(std::chrono::seconds(1));
-        std::_Exit(static_cast<int>(ExitCode::Failed));
+        std::_Exit(static_cast<int>(fault.code()));
     }
+    if (!ranks()) return;
     log::setReceiver([](MessageLevel level, const std::string& text) { ranks()->show(level, text); });
     endInterruptedLater();
     shareCores(ranks()->place());

@@ -9,10 +9,11 @@
 namespace limpid::cli {
 
 /// Joins the processes of the run if there are several, or one under a launcher that says so. `command`:
-/// render, denoise, dataset or bench quality; other commands do their work in each process. Sets the number
-/// of threads of this process, if it shares the machine with others: of TBB, and of lavapipe (LP_NUM_THREADS,
-/// unless it is set already). Throws Error as cluster::startTransport().
-void joinCluster(const std::string& command);
+/// render, denoise, dataset or bench quality; merge and compare are refused (UsageError) if there are
+/// several, except for `help`; other commands do their work in each process. Sets the number of threads of
+/// this process, if it shares the machine with others: of TBB, and of lavapipe (LP_NUM_THREADS, unless it is
+/// set already). Throws Error as cluster::startTransport() and patienceOf().
+void joinCluster(const std::string& command, bool help);
 
 /// The processes of this run; null if there is only this one.
 cluster::Ranks* ranks();

@@ -1,11 +1,16 @@
 #include "cli/options/device_options.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/log.h"
 #include "cli/cluster/local_share.h"
 #include "cli/cluster/session.h"
 #include "cli/console/help_text.h"
 #include "gpu/specialise/specialise.h"
+#include "image/io/rows/limits.h"
 
 namespace limpid::cli {
 
@@ -37,6 +42,26 @@ OpenDevice openDevice(const DeviceChoice& choice) {
     OpenDevice device(new gpu::Device(options));
     loadPipelines(*device, pipelineFile(*device));
     return device;
+}
+
+void checkPictureSize(gpu::Extent extent) {
+    const uint64_t pixels = uint64_t{extent.width} * extent.height;
+    if (pixels > image::maxPixels)
+        throw UsageError(
+            fmt::format("--width and --height: {}x{} are {} pixels, but a picture has at most {}",
+                        extent.width, extent.height, pixels, image::maxPixels));
+}
+
+void checkPictureSize(gpu::Extent extent, const gpu::Device& device, bool accumulates) {
+    const auto refuse = [&](uint64_t most, const char* unit) {
+        throw UsageError(fmt::format("--width and --height: {}x{} pixels, but {} has at most {} {}",
+                                     extent.width, extent.height, device.info().name, most, unit));
+    };
+    if (std::max(extent.width, extent.height) > device.maxImageSide())
+        refuse(device.maxImageSide(), "a side");
+    // Means have four floats a pixel, and the inputs of denoisers at least four halves.
+    const uint64_t most = device.maxAllocationBytes() / (accumulates ? 16 : 8);
+    if (uint64_t{extent.width} * extent.height > most) refuse(most, "in an image");
 }
 
 scene::Tracer chosenTracer(const DeviceChoice& choice, const gpu::Device& device) {

@@ -1,10 +1,13 @@
 #include "cli/options/render_options.h"
 
 #include <algorithm>
+#include <set>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/files/frame_pattern.h"
+#include "base/log.h"
 #include "cli/console/help_text.h"
 #include "cli/render/clip_output.h"
 #include "cli/render/picture_output.h"
@@ -26,12 +29,34 @@ void checkClip(const RenderOptions& o) {
         throw UsageError(
             "--checkpoint, --resume, --shard and --time-limit are not for clips: render frame.%04d.png");
     if (!o.layers.empty()) throw UsageError("--aov needs an .exr output");
+    if (o.floatExr) throw UsageError("--float needs an .exr output");
     if (!o.dump.empty()) throw UsageError("--dump is not for clips: render frame.%04d.exr");
     checkClipOutput(FramePattern(o.output).format(0));
 }
 
+/// A checkpoint keeps how pictures look, for those that 'limpid merge' makes of it, .exr or .png.
+bool hasCheckpoint(const RenderOptions& o) {
+    return !o.longRender.checkpoint.empty();
+}
+
+/// Not refused: the window's command lines have the tone curve that it shows.
+void warnOfUnusedLook(const RenderOptions& o, const fs::path& path) {
+    const bool exposure = o.exposure != "auto", curve = o.toneCurve != "standard";
+    if ((!exposure && !curve) || hasCheckpoint(o)) return;
+    const char* const have = exposure && curve ? "--exposure and --tone-curve have"
+                             : exposure        ? "--exposure has"
+                                               : "--tone-curve has";
+    const Pipeline pipeline = pipelineOf(o);
+    if (!pipeline.needsExposure())
+        log::warn("{} no effect: the values of --integrator {} are shown as they are", have,
+                  nameOf(pipeline.integrator));
+    else if (isExr(path) && !o.preview)
+        log::warn("{} no effect: an .exr is linear, unlike .png and videos", have);
+}
+
 void checkOutput(const RenderOptions& o) {
     const fs::path path = FramePattern(o.output).format(0);
+    warnOfUnusedLook(o, path);
     if (isClip(path)) return checkClip(o);
     const bool sums = path.extension() == ".sums";
     if (sums != writesSums(o)) {
@@ -42,25 +67,43 @@ void checkOutput(const RenderOptions& o) {
     }
     if (sums) return checkWritable(path);
     checkPictureOutput(path, !o.layers.empty());
+    if (o.floatExr && !isExr(path) && !hasCheckpoint(o)) throw UsageError("--float needs an .exr output");
     if (o.preview) checkWritable(previewFile(path));
 }
 
-/// Returns the frames of the output whose file may have this name.
-std::vector<int> framesThatMayBe(const FramePattern& output, const fs::path& file) {
+/// None if the folder cannot be listed: frames can be written there all the same.
+std::vector<int> existingFrames(const FramePattern& output) {
+    try {
+        return output.existingFrames();
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+/// Returns the frames of the output whose file may be one of these.
+std::vector<int> framesThatMayBe(const FramePattern& output, const std::vector<fs::path>& files) {
     if (!output.numbered()) return {0};
-    std::vector<int> frames = output.existingFrames();  // one may be a symbolic link
-    for (const fs::path& name : {file, linkTarget(file)}) {
-        if (const std::optional<int> frame = output.frameOf(name.filename().string()))
-            frames.push_back(*frame);
+    std::vector<int> frames = existingFrames(output);  // one may be a symbolic link
+    for (const fs::path& file : files) {
+        for (const fs::path& name : {file, linkTarget(file)}) {
+            if (const std::optional<int> frame = output.frameOf(name.filename().string()))
+                frames.push_back(*frame);
+        }
     }
     return frames;
+}
+
+/// With links followed; empty if that is not possible.
+fs::path canonicalPath(const fs::path& file) {
+    std::error_code fault;
+    return fs::weakly_canonical(file, fault);
 }
 
 /// Otherwise the checkpoint and the output would overwrite each other.
 void checkCheckpointIsNoOutput(const RenderOptions& o) {
     if (o.longRender.checkpoint.empty()) return;
     const FramePattern output(o.output);
-    for (const int frame : framesThatMayBe(output, o.longRender.checkpoint)) {
+    for (const int frame : framesThatMayBe(output, {o.longRender.checkpoint})) {
         const fs::path file = output.format(frame);
         if (isSameFile(file, o.longRender.checkpoint))
             throw UsageError("--checkpoint: '" + o.longRender.checkpoint + "' is the output '" +
@@ -68,12 +111,12 @@ void checkCheckpointIsNoOutput(const RenderOptions& o) {
     }
 }
 
-/// The environment map would be gone. A scene's textures are not looked for.
+/// The environment map would be gone.
 void checkEnvironmentIsNoOutput(const RenderOptions& o) {
     const std::string& environment = o.scene.source.environment;
     if (environment.empty()) return;
     const FramePattern output(o.output);
-    for (const int frame : framesThatMayBe(output, environment)) {
+    for (const int frame : framesThatMayBe(output, {environment})) {
         if (isSameFile(output.format(frame), environment))
             throw UsageError("--env: '" + environment + "' is the output, which would replace it");
     }
@@ -104,6 +147,23 @@ void checkShutter(const RenderOptions& o) {
             "follow sharp surfaces from frame to frame");
 }
 
+bool setsMaxDepth(const std::string& text) {
+    const Assignment assignment = parseAssignment(text);
+    return assignment.group == "pathtrace" && assignment.name == "max_depth";
+}
+
+/// Otherwise it would have no effect, or not the one that was asked for.
+void checkMaxDepth(const RenderOptions& o, const Pipeline& pipeline) {
+    const bool isSet = std::ranges::any_of(o.assignments, setsMaxDepth);
+    if (o.maxDepth < 0 && !isSet) return;
+    const std::string option = isSet ? "--set pathtrace.max_depth" : "--max-depth";
+    if (pipeline.takesOneSampleALaunch())
+        throw UsageError(option + " is for --integrator path and direct: " + pipeline.options() +
+                         " follows no paths");
+    if (pipeline.integrator == Integrator::Direct && settingsOf(o).pathtrace.maxDepth > 1)
+        throw UsageError(option + ": --integrator direct has one bounce at most");
+}
+
 void addOutputOptions(CLI::App& command, RenderOptions& o) {
     const OptionGroup group(command, "Output");
     command
@@ -113,13 +173,15 @@ void addOutputOptions(CLI::App& command, RenderOptions& o) {
         ->required();
     command.add_option("--width", o.width, "Picture width, pixels (1280)")->check(CLI::Range(1, 65535));
     command.add_option("--height", o.height, "Picture height, pixels (720)")->check(CLI::Range(1, 65535));
-    command.add_option("--exposure", o.exposure,
-                       "Exposure of a PNG: stops (higher is brighter), or 'auto' (default): measured on "
-                       "pixels that see a surface");
+    command.add_option(
+        "--exposure", o.exposure,
+        "Exposure of a PNG or video: stops (higher is brighter), or 'auto' (default): measured on "
+        "pixels that see a surface");
     command
-        .add_option("--tone-curve", o.toneCurve,
-                    "Tone curve of a PNG: standard (filmic, default), agx (bright colours turn white), none "
-                    "(clipped) or false-color (a colour for each stop of luminance)")
+        .add_option(
+            "--tone-curve", o.toneCurve,
+            "Tone curve of a PNG or video: standard (filmic, default), agx (bright colours turn white), none "
+            "(clipped) or false-color (a colour for each stop of luminance)")
         ->check(CLI::IsMember(image::toneCurveNames()));
     std::string layers;
     for (const std::string& layer : layerNames()) layers += " " + layer;
@@ -147,7 +209,8 @@ void addSamplingOptions(CLI::App& command, RenderOptions& o) {
         ->check(CLI::Range(1, 4096));
     command
         .add_option("--max-depth", o.maxDepth,
-                    "Maximum number of bounces (8); the same as --set pathtrace.max_depth")
+                    "Maximum number of bounces (8, with --integrator direct 1); the same as --set "
+                    "pathtrace.max_depth")
         ->check(CLI::Range(0, 1024));
     command.add_option("--seed", o.seed, "Random seed; another seed gives other noise (0)");
     command
@@ -253,8 +316,25 @@ std::vector<std::string> chosenLayers(const RenderOptions& o) {
     return layers;
 }
 
+void checkSceneIsNoOutput(const RenderOptions& o, const scene::Scene& scene, int frames) {
+    if (scene.files.empty()) return;
+    std::set<fs::path> files;
+    for (const fs::path& file : scene.files) files.insert(canonicalPath(file));
+    files.erase(fs::path());
+    const FramePattern output(o.output);
+    std::vector<fs::path> outputs;
+    for (const int frame : framesThatMayBe(output, scene.files))
+        if (frame < frames) outputs.push_back(output.format(frame));
+    if (o.preview) outputs.push_back(previewFile(output.format(0)));
+    for (const fs::path& file : outputs)
+        if (files.contains(canonicalPath(file)))
+            throw UsageError("'" + file.string() +
+                             "' is a file of the scene, which the output would replace");
+}
+
 void checkRenderOptions(const RenderOptions& o) {
     const Pipeline pipeline = pipelineOf(o);
+    checkPictureSize({o.width, o.height});
     if (o.progressive && isLongRender(o.longRender))
         throw UsageError("--progressive: not with --checkpoint, --resume, --shard and --time-limit");
     if (!hasIndependentFrames(pipeline) && isLongRender(o.longRender)) {
@@ -270,6 +350,7 @@ void checkRenderOptions(const RenderOptions& o) {
         throw UsageError("--preview is for stills by --integrator path or direct and --denoiser none");
     checkLens(o.lens, pipeline);
     checkShutter(o);
+    checkMaxDepth(o, pipeline);
     checkScene(o);
     checkLongRender(o.longRender);
     checkOutput(o);

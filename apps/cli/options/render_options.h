@@ -43,6 +43,10 @@ Jitter parseJitter(const std::string& name);
 /// Throws UsageError or OutputError if the options contradict each other, or name what there is not.
 void checkRenderOptions(const RenderOptions& options);
 
+/// Throws UsageError if one of so many frames of the output would replace a file that the scene was loaded
+/// from.
+void checkSceneIsNoOutput(const RenderOptions& options, const scene::Scene& scene, int frames);
+
 /// That of --integrator and --denoiser, else of --preset, else the path tracer alone.
 Pipeline pipelineOf(const RenderOptions& options);
 /// Each is made of its own samples and nothing else, in any order and by any process.

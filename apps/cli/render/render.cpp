@@ -82,15 +82,12 @@ void checkCluster(const RenderOptions& o) {
     refuseInCluster(o.preview, "--preview is for one process");
 }
 
-/// Thrown if a render is interrupted before its first frame: then an older clip stays.
-struct NoFrames {};
-
-void renderClip(RenderJob job, RenderSummary& summary) try {
+void renderClip(RenderJob job, RenderSummary& summary) {
     const RenderOptions& o = job.options;
     const fs::path file = FramePattern(o.output).format(0);
     // Left behind by a process that was killed while writing.
     removeStaleTemporaries(file);
-    writeAtomically(file, [&](const fs::path& temporary) {
+    writeAtomicallyIf(file, [&](const fs::path& temporary) {
         ClipWriter clip(temporary, {.width = job.settings.extent.width,
                                     .height = job.settings.extent.height,
                                     .framesPerSecond = o.sequence.timing.framesPerSecond,
@@ -99,11 +96,11 @@ void renderClip(RenderJob job, RenderSummary& summary) try {
                                     .shownAsIs = !job.settings.pipeline.needsExposure()});
         job.clip = &clip;
         renderFrames(job, summary);
-        if (clip.isEmpty()) throw NoFrames();
+        // Interrupted before its first frame: an older clip stays, and the report says so.
+        if (clip.isEmpty()) return false;
         clip.finish();
+        return true;
     });
-} catch (const NoFrames&) {
-    // The report says so.
 }
 
 void render(const RenderOptions& o) {
@@ -114,18 +111,24 @@ void render(const RenderOptions& o) {
     const FramePattern output(o.output);
     RenderSummary summary;
     const Clock::time_point started = Clock::now();
+    // Before the scene, which may take minutes: the device knows whether the picture is too large.
+    const OpenDevice device = openDevice(o.device);
+    checkPictureSize(settings.extent, *device, settings.pipeline.accumulates());
+    summary.timings.uploadSeconds = secondsSince(started);
+
+    const Clock::time_point loadStart = Clock::now();
     scene::Scene scene = scene::openScene(o.scene.source);
     chooseAnimation(o.sequence, output, scene);
     const scene::Camera camera = chosenCamera(scene, o.scene);
     const std::optional<scene::CameraPath> path = chosenPath(o.sequence, scene, camera);
     summary.frames = frameCount(o.sequence, output, scene, path);
+    checkSceneIsNoOutput(o, scene, summary.frames);
     checkLensOf(scene::withLens(path ? path->widest() : camera, o.lens), o.lens, settings.pipeline);
     if (summary.frames == 1 && output.numbered() && chosenShard(o.longRender.shard).count > 1)
         throw UsageError("--shard: the sequence has one frame only, which is a still: name a .sums file");
-    summary.timings.loadSeconds = secondsSince(started);
+    summary.timings.loadSeconds = secondsSince(loadStart);
 
     const Clock::time_point uploadStart = Clock::now();
-    const OpenDevice device = openDevice(o.device);
     if (settings.pipeline.usesNetwork() && samplesOf(o) < minNetworkSamples)
         log::warn("{} learnt from frames of 32 samples; {} tell it little", settings.pipeline.denoiser->name,
                   samplesOf(o));
@@ -136,7 +139,7 @@ void render(const RenderOptions& o) {
     const uint64_t content = sceneHash(scene, data);
     data = {};  // now on the device, like the textures
     scene.textures.clear();
-    summary.timings.uploadSeconds = secondsSince(uploadStart);
+    summary.timings.uploadSeconds += secondsSince(uploadStart);
 
     const RenderJob job{o, settings, *device, gpuScene, sequence, content, summary.frames, started};
     if (isClip(output.format(0))) {
@@ -145,6 +148,9 @@ void render(const RenderOptions& o) {
         renderFrames(job, summary);
     }
     if (isFirstProcess()) reportRender(o, *device, summary, scene, gpuScene);
+    // A script that goes on with --resume would begin with the same work again and again.
+    if (summary.lostState && !summary.complete)
+        throw Error("the last checkpoint could not be written: the work since the one before is lost");
     if (device->validationMessages() > 0) {
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
     }

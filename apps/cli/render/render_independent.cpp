@@ -101,6 +101,7 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
                                    .finish = finish,
                                    .preview = preview,
                                    .isThere = [&](uint64_t frame) { return fs::exists(file(frame)); }});
+    summary.lostState = render.lostState();
     summary.blocksFinished = render.blocksFinished();
     summary.framesFinished = render.framesFinished();
     summary.framesToDo = render.framesToDo();

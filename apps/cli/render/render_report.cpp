@@ -30,7 +30,8 @@ void warnOfRest(const RenderOptions& o, const RenderSummary& s) {
     if (s.framesToDo == 0 || (s.complete && s.samples == 0 && writesSums(o)))
         log::warn("shard {} is empty: there are fewer parts than shards", o.longRender.shard);
     if (s.complete) return;
-    const std::string rest = o.longRender.checkpoint.empty() ? "" : "; --resume makes the rest";
+    const bool kept = !o.longRender.checkpoint.empty() && !s.lostState;
+    const char* const rest = kept ? "; --resume makes the rest" : "";
     const char* const why = interrupted() ? "interrupted" : "time is up";
     if (s.frames > 1) {
         log::warn("{}: {} of {} frames are finished{}", why, s.framesFinished, s.framesToDo, rest);

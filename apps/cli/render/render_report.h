@@ -17,7 +17,8 @@
 namespace limpid::cli {
 
 struct Timings {
-    double loadSeconds = 0.0, uploadSeconds = 0.0, renderSeconds = 0.0;
+    double loadSeconds = 0.0, renderSeconds = 0.0;
+    double uploadSeconds = 0.0;  ///< with the time to open the device
 };
 
 struct RenderSummary {
@@ -27,6 +28,7 @@ struct RenderSummary {
     uint64_t blocksFinished = 0;
     uint64_t samples = 0;  ///< of the last picture or file of sums, per pixel
     bool complete = false;
+    bool lostState = false;                 ///< the checkpoint could not be written at the end
     SampleCounts counts;                    ///< of this run
     std::vector<uint64_t> piecesByProcess;  ///< of several that share the work: blocks of a still, or frames
     Timings timings;

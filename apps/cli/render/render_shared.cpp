@@ -89,7 +89,7 @@ class SharedStill : SharedFrames {
         if (!isFirstProcess()) return;
         for (const uint64_t count : summary.piecesByProcess) summary.blocksFinished += count;
         summary.complete = sums_.complete();
-        if (checkpoint_ && anyToDo) checkpoint_->save(header_, sums_);
+        if (checkpoint_ && anyToDo) summary.lostState = !checkpoint_->saveLast(header_, sums_);
         addPart();
         report(summary, start);
         summary.samples = sums_.samples();
@@ -150,12 +150,17 @@ class SharedSequence : SharedFrames {
         work_.finished = [&](const std::vector<uint64_t>& frames, uint64_t count) {
             for (const uint64_t frame : frames) finished[frame] = true;
             progress.show(count);
-            save(finished, false);
+            if (!checkpoint_) return;
+            setFinished(finished);
+            checkpoint_->saveIfDue(header_, newSums());
         };
         const Clock::time_point start = Clock::now();
         summary.piecesByProcess = ranks()->share(work_);
         if (!isFirstProcess()) return;
-        save(finished, true);
+        if (checkpoint_) {
+            setFinished(finished);
+            summary.lostState = !checkpoint_->saveLast(header_, newSums());
+        }
         report(summary, start);
         summary.framesToDo = header_.frames;
         summary.framesFinished = static_cast<uint64_t>(std::count(finished.begin(), finished.end(), true));
@@ -175,8 +180,7 @@ class SharedSequence : SharedFrames {
         return finished;
     }
 
-    void save(const std::vector<bool>& finished, bool now) {
-        if (!checkpoint_) return;
+    void setFinished(const std::vector<bool>& finished) {
         header_.finished.clear();
         for (uint64_t frame = 0; frame < finished.size(); ++frame) {
             if (!finished[frame]) continue;
@@ -184,7 +188,6 @@ class SharedSequence : SharedFrames {
                 header_.finished.emplace_back(frame, frame);
             header_.finished.back().second = frame;
         }
-        now ? checkpoint_->save(header_, newSums()) : checkpoint_->saveIfDue(header_, newSums());
     }
 
     bool render(uint64_t frame) {

@@ -22,7 +22,9 @@
 #include "cli/options/long_render_options.h"
 #include "lab/dataset/dataset_clip.h"
 #include "lab/dataset/dataset_example.h"
+#include "renderer/long/render_identity.h"
 #include "scene/device/scene_data.h"
+#include "scene/load/scene_files.h"
 #include "scene/load/scene_source.h"
 #include "scene/motion/movement.h"
 
@@ -57,6 +59,54 @@ uint32_t numberFrom(uint32_t seed, std::string_view purpose, uint64_t index) {
     return static_cast<uint32_t>(x ^ (x >> 31));
 }
 
+fs::path folderOf(const std::string& scene) {
+    return fs::absolute(scene).parent_path();
+}
+
+/// Hash of a file; empty if it cannot be read, as a texture that is replaced by a plain colour.
+std::string contentOf(const fs::path& file) {
+    try {
+        Hash64 hash;
+        hash.addValues(readFile(file, scene::SceneFiles::maxTotalBytes));
+        return hashText(hash.value());
+    } catch (const InputError&) {
+        return "";
+    }
+}
+
+/// The files that `scene`, which has this name, was loaded from: contentOf() each, by its path from the
+/// scene's folder.
+json contentsOf(const std::string& name, const scene::Scene& scene) {
+    json contents = json::object();
+    for (const fs::path& file : scene.files) {
+        // References lead to one file, but the scene's own name may be a link that is changed.
+        std::error_code fault;
+        const bool own = file == scene.files.front();
+        const std::string path = (own ? file.filename() : fs::relative(file, folderOf(name), fault)).string();
+        // JSON cannot keep any other name.
+        if (!fault && validUtf8(path) == path) contents[path] = contentOf(file);
+    }
+    return contents;
+}
+
+/// The first difference between the parameters of two datasets, for a message.
+std::string differenceOf(const json& theirs, const json& ours) {
+    if (!theirs.is_object()) return "it names no parameters";
+    const auto valueOf = [](const json& parameters, const std::string& key) {
+        return parameters.contains(key) ? parameters.at(key).dump() : "absent";
+    };
+    if (valueOf(theirs, "limpid") != valueOf(ours, "limpid"))
+        return fmt::format("it was made by another version of Limpid ({}, not {})", valueOf(theirs, "limpid"),
+                           valueOf(ours, "limpid"));
+    json keys = theirs;
+    keys.update(ours);
+    for (const auto& [key, unused] : keys.items()) {
+        const std::string value = valueOf(theirs, key), wanted = valueOf(ours, key);
+        if (value != wanted) return fmt::format("{} is {}, not {}", key, value, wanted);
+    }
+    return "its parameters are written otherwise";
+}
+
 class Dataset {
   public:
     explicit Dataset(const DatasetOptions& options) : o_(options) {}
@@ -80,6 +130,7 @@ class Dataset {
     /// Returns the parameters that determine the content: the same in every file of a dataset.
     json parameters() const {
         json result{{"version", 2},
+                    {"limpid", LIMPID_VERSION},
                     {"seed", o_.example.seed},
                     {"rooms", o_.rooms},
                     {"still_lifes", o_.stillLifes},
@@ -97,14 +148,13 @@ class Dataset {
     }
 
     /// Returns the metadata of a complete file; none if it is missing or damaged. Throws UsageError if it
-    /// belongs to another dataset.
+    /// belongs to another dataset, or if one of its scenes has changed since.
     std::optional<std::map<std::string, std::string>> finished(uint64_t number) const {
         if (!fs::exists(file(number))) return std::nullopt;
         try {
             auto metadata = neural::readTensorFile(file(number)).metadata;
-            if (metadata[parametersKey] != parameters().dump())
-                throw UsageError(fmt::format("'{}' is of a dataset with other parameters: {}",
-                                             file(number).string(), metadata[parametersKey]));
+            checkParameters(number, metadata[parametersKey]);
+            checkScenes(number, json::parse(metadata[examplesKey]));
             return metadata;
         } catch (const InputError& fault) {
             log::warn("{}; it is made anew", fault.what());
@@ -124,6 +174,7 @@ class Dataset {
             scene::GpuScene gpuScene(device, data, {tracer, {}});
             list.push_back(o_.sequence.empty() ? addStill(device, gpuScene, scene, example, result)
                                                : addMoving(device, gpuScene, scene, data, example, result));
+            if (!scene.files.empty()) list.back()["files"] = contentsOf(sceneOf(example), scene);
         }
         result.metadata = {{parametersKey, parameters().dump()}, {examplesKey, list.dump()}};
         neural::writeTensorFile(file(number), result);
@@ -149,6 +200,23 @@ class Dataset {
 
   private:
     static std::string nameOf(uint64_t example) { return fmt::format("{:06}", example); }
+
+    void checkParameters(uint64_t number, const std::string& text) const {
+        if (text == parameters().dump()) return;
+        throw UsageError(fmt::format("'{}' is of another dataset: {}", file(number).string(),
+                                     differenceOf(json::parse(text, nullptr, false), parameters())));
+    }
+
+    void checkScenes(uint64_t number, const json& examples) const {
+        for (const json& example : examples) {
+            const std::string scene = example.at("scene");
+            const json files = example.value("files", json::object());
+            for (const auto& [name, content] : files.items())
+                if (contentOf(folderOf(scene) / name) != content)
+                    throw UsageError(fmt::format("'{}': the scene '{}' has changed since: {}",
+                                                 file(number).string(), scene, name));
+        }
+    }
 
     json addStill(gpu::Device& device, scene::GpuScene& gpuScene, const scene::Scene& scene, uint64_t example,
                   neural::TensorFile& result) const {
@@ -229,7 +297,7 @@ void makeFiles(const Dataset& dataset, const Shard& shard, gpu::Device& device, 
     ClusterProgress progress("files", dataset.files());
     cluster::SharedWork work;
     Hash64 identity;
-    identity.add(dataset.parameters().dump() + LIMPID_VERSION);
+    identity.add(dataset.parameters().dump());
     work.identity = identity.value();
     work.device = device.info().name + ", " + device.info().driver;
     for (uint64_t number = 0; number < dataset.files(); ++number) work.todo.push_back(number);
@@ -262,11 +330,14 @@ void run(const DatasetOptions& o) {
     }
     if (o.pictureHeight > 0 && (o.sequence.empty() || o.pictureHeight < o.example.extent.height))
         throw UsageError("--picture-height goes with --sequence, and is at least --height");
-    const Dataset dataset(o);
-    if (dataset.examples() == 0) throw UsageError("choose at least one room, still life or scene");
+    if (o.rooms + o.stillLifes == 0 && o.scenes.empty())
+        throw UsageError("choose at least one room, still life or scene");
+    checkPictureSize(o.example.extent);
     checkScenesExist(o.scenes);
+    const Dataset dataset(o);
     makeFolder(o.folder);
     const OpenDevice device = openDevice(o.device);
+    checkPictureSize(o.example.extent, *device, true);  // references are means
     const scene::Tracer tracer = chosenTracer(o.device, *device);
     makeFiles(dataset, shard, *device, tracer);
     if (!isFirstProcess()) return;

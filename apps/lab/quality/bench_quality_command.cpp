@@ -111,6 +111,7 @@ uint64_t pictureBytesPerSequence(const QualityOptions& o, size_t sequences) {
 }
 
 void run(const QualityOptions& o, const std::string& command) {
+    checkPictureSize({o.width, o.height});
     methodsOf(o);  // reports faults before the device is opened
     const std::vector<QualitySequence> sequences = sequencesOf(o);
     checkInputs(o);
@@ -118,6 +119,7 @@ void run(const QualityOptions& o, const std::string& command) {
     if (!o.folder.empty() && isFirstProcess()) makeFolder(o.folder);
     if (!o.referenceFolder.empty()) makeFolder(o.referenceFolder);
     const OpenDevice device = openDevice(o.device);
+    checkPictureSize({o.width, o.height}, *device, true);  // references are means
     const std::vector<QualityMethod> methods = loadMethods(*device, o);
     const QualityRun head{.version = LIMPID_VERSION,
                           .command = command,
@@ -137,6 +139,17 @@ void run(const QualityOptions& o, const std::string& command) {
     output.finish();
 }
 
+/// Otherwise an option would have no effect, without a word.
+void checkGoTogether(const QualityOptions& o, const CLI::App& command) {
+    if (!o.pathsFolder.empty() && o.scenesFolder.empty())
+        throw UsageError("--paths-folder goes with --scenes-folder");
+    if (!o.scenes.empty() || !o.scenesFolder.empty()) return;
+    for (const char* option : {"--env", "--camera-path"})
+        if (command.count(option) > 0)
+            throw UsageError(fmt::format(
+                "{} is for --scene and --scenes-folder; the sequences of --lab have their own", option));
+}
+
 /// Fills in defaults for options that were not given.
 void complete(QualityOptions& o, const CLI::App& command) {
     const auto given = [&](const char* option) { return command.count(option) > 0; };
@@ -149,6 +162,7 @@ void complete(QualityOptions& o, const CLI::App& command) {
         if (o.scenes.empty() && o.scenesFolder.empty()) o.lab = true;
     }
     if (o.scenes.empty() && o.scenesFolder.empty() && !o.lab) o.scenes = {"builtin:cornell"};
+    checkGoTogether(o, command);
     if (!o.methods.denoisers.empty()) return;
     for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
         const Integrator integrator = o.integrator.empty() ? Integrator::Path : parseIntegrator(o.integrator);

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "base/text/lower_case.h"
 #include "scene/lights/light_file.h"
 #include "scene/motion/movement.h"
 #include "studio/loop/render_loop.h"
@@ -100,7 +101,7 @@ void RenderLoop::goTo(const scene::Camera& home) {
 
 /// Opens an environment map around the current scene, or a scene.
 void RenderLoop::open(const std::string& file, bool dropped) {
-    const std::string extension = std::filesystem::path(file).extension().string();
+    const std::string extension = lowerCase(std::filesystem::path(file).extension().string());
     SceneLoading::Order order = orderToChange();
     order.why = SceneLoading::Why::Opened;
     order.clip = "";

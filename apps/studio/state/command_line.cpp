@@ -33,6 +33,19 @@ std::string timesOf(const ShownFrame& frame, const Playback& playback, uint64_t 
            fmt::format(" --time {}", frames > 1 ? playback.startTime() : playback.shownTime());
 }
 
+/// Without those that have no effect on this picture, which `limpid render` refuses.
+std::string parametersOf(RenderSettings settings) {
+    const Pipeline& pipeline = settings.pipeline;
+    if (pipeline.takesOneSampleALaunch() || settings.pathsTraced() != settings.pathtrace)
+        settings.pathtrace.maxDepth = PathtraceSettings().maxDepth;
+    const std::vector<std::string_view> groups = groupsOf(pipeline);
+    std::string text;
+    for (const std::string& assignment : assignmentsOf(settings))
+        if (std::ranges::find(groups, parseAssignment(assignment).group) != groups.end())
+            text += " --set " + assignment;
+    return text;
+}
+
 }  // namespace
 
 std::string quoted(const std::string& word) {
@@ -80,7 +93,7 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
     }
     if (!frame.weights.empty() && s.pipeline.usesNetwork())
         result.text += " --weights " + quoted(frame.weights);
-    for (const std::string& text : assignmentsOf(s)) result.text += " --set " + text;
+    result.text += parametersOf(s);
     result.text += (frames > 1 ? " -o frame.%04d.exr" : " -o frame.exr");
     return result;
 }

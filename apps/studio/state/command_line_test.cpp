@@ -58,6 +58,22 @@ TEST_F(CommandLineTest, LightsAndLayersAreSaid) {
     EXPECT_THAT(text(), HasSubstr("--aov all"));
 }
 
+/// The window keeps them, but `limpid render` refuses them.
+TEST_F(CommandLineTest, ParametersWithoutEffectAreLeftOut) {
+    assign(frame_.settings, "svgf.levels=3");
+    assign(frame_.settings, "pathtrace.max_depth=12");
+    frames(1, false);
+    EXPECT_THAT(text(), HasSubstr("--set pathtrace.max_depth=12"));
+    EXPECT_THAT(text(), Not(HasSubstr("svgf.levels")));
+    for (const char* integrator : {"direct", "ao"}) {
+        frame_.settings.pipeline = parsePipeline(integrator);
+        EXPECT_THAT(text(), Not(HasSubstr("--set"))) << integrator;
+    }
+    frame_.settings.pipeline = parsePipeline("direct");
+    assign(frame_.settings, "pathtrace.max_depth=0");
+    EXPECT_THAT(text(), HasSubstr("--set pathtrace.max_depth=0"));
+}
+
 TEST_F(CommandLineTest, HistoriesNeedAllFrames) {
     frame_.settings.pipeline = parsePipeline("path", "svgf");
     assign(frame_.settings, "svgf.levels=3");

@@ -7,6 +7,7 @@
 
 #include "base/files/file.h"
 #include "base/log.h"
+#include "scene/load/load.h"
 
 namespace limpid::viewer {
 namespace {
@@ -19,9 +20,7 @@ constexpr float narrowest = 100.0f, widest = 4000.0f;  ///< pixels, of a panel t
 }  // namespace
 
 void Memory::addRecent(const std::string& file) {
-    const std::string extension = fs::path(file).extension().string();
-    if (file.starts_with("builtin:") || (extension != ".gltf" && extension != ".glb" && extension != ".obj"))
-        return;
+    if (file.starts_with("builtin:") || !scene::isSceneFile(file)) return;
     const std::string path = fs::absolute(file).lexically_normal().string();
     std::erase(recent, path);
     recent.insert(recent.begin(), path);

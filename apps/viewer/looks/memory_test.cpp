@@ -51,6 +51,8 @@ TEST(Memory, TheLastTenScenesAreRecent) {
     memory.addRecent("builtin:cornell");
     memory.addRecent("/skies/day.hdr");
     EXPECT_EQ(memory.recent.front(), "/scenes/5.glb");
+    memory.addRecent("/scenes/ROOM.GLB");
+    EXPECT_EQ(memory.recent.front(), "/scenes/ROOM.GLB");
 }
 
 TEST(Memory, LiesBesideTheKeptSettings) {

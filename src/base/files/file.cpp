@@ -155,15 +155,26 @@ void removeStaleTemporaries(const fs::path& output) {
 }
 
 void writeAtomically(const fs::path& path, const std::function<void(const fs::path& temporary)>& write) {
+    writeAtomicallyIf(path, [&](const fs::path& temporary) {
+        write(temporary);
+        return true;
+    });
+}
+
+bool writeAtomicallyIf(const fs::path& path, const std::function<bool(const fs::path& temporary)>& write) {
     checkWritable(path);
     const fs::path target = linkTarget(path);
     const fs::path temporary = createTemporary(target);
+    std::error_code fault;
     try {
-        write(temporary);
+        if (!write(temporary)) {
+            fs::remove(temporary, fault);
+            return false;
+        }
         flushToDisk(temporary, path);
-        std::error_code fault;
         fs::rename(temporary, target, fault);
         if (fault) throw OutputError(path, "cannot be renamed into place: " + fault.message());
+        return true;
     } catch (...) {
         std::error_code ignored;
         fs::remove(temporary, ignored);

@@ -35,6 +35,10 @@ bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 void writeAtomically(const std::filesystem::path& path,
                      const std::function<void(const std::filesystem::path& temporary)>& write);
 
+/// The same, but if `write` returns false, `path` stays unchanged, too. Returns what `write` does.
+bool writeAtomicallyIf(const std::filesystem::path& path,
+                       const std::function<bool(const std::filesystem::path& temporary)>& write);
+
 /// Writes `text` with writeAtomically(). Throws OutputError, for example on a full disk.
 void writeTextAtomically(const std::filesystem::path& path, std::string_view text);
 

@@ -47,6 +47,16 @@ TEST_F(FileTest, ReplacesAnOutputOnlyWhenTheWriterSucceeds) {
     writeTextAtomically(out, "text\n");
     EXPECT_EQ(get(out), "text\n");
     EXPECT_EQ(files(), 1u);
+    for (const bool wanted : {false, true}) {
+        EXPECT_EQ(writeAtomicallyIf(out,
+                                    [&](const fs::path& temporary) {
+                                        put(temporary, "wanted");
+                                        return wanted;
+                                    }),
+                  wanted);
+        EXPECT_EQ(get(out), wanted ? "wanted" : "text\n");
+        EXPECT_EQ(files(), 1u);
+    }
 }
 
 TEST_F(FileTest, AFailedRenameLeavesNoTemporary) {

@@ -54,6 +54,10 @@ uint64_t Device::maxTexelBufferElements() const {
     return impl_->context->limits().maxTexelBufferElements;
 }
 
+uint64_t Device::maxAllocationBytes() const {
+    return impl_->context->maxAllocation();
+}
+
 uint64_t Device::maxBufferBytes() const {
     return impl_->context->maxBufferBytes();
 }

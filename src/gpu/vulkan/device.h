@@ -113,6 +113,7 @@ class Device {
     uint64_t allocatedBytes() const;
     uint32_t maxImageSide() const;  ///< maxImageDimension2D
     uint64_t maxTexelBufferElements() const;
+    uint64_t maxAllocationBytes() const;     ///< maxMemoryAllocationSize
     uint64_t maxBufferBytes() const;         ///< the smaller of maxBufferSize and maxMemoryAllocationSize
     uint64_t maxStorageBufferBytes() const;  ///< the same, and at most maxStorageBufferRange
 

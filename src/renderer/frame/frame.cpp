@@ -15,6 +15,12 @@ namespace {
 using gpu::FrameGraph;
 using gpu::ImageHandle;
 
+/// The stream of random numbers of a launch. Numbers repeat after 2^32 launches, which are so many frames
+/// apart that nothing compares or averages them.
+uint32_t streamOf(uint64_t launch) {
+    return static_cast<uint32_t>(launch);
+}
+
 CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& input) {
     return {.extent = settings.extent,
             .camera = input.camera,
@@ -22,7 +28,7 @@ CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& inpu
             .hasPrevious = input.hasPrevious,
             .firstSample = input.firstSample,
             .firstPoint = input.firstPoint,
-            .stream = static_cast<uint32_t>(input.stream),
+            .stream = streamOf(input.stream),
             .seed = settings.seed,
             .jitter = settings.jitter,
             .jitterSpan = input.jitterSpan,
@@ -89,8 +95,7 @@ FrameImages recordAmbientOcclusion(FrameGraph& graph, const scene::GpuScene& sce
     const GBufferImages seen = recordGBuffer(graph, scene, settings, input, false, out);
     const ImageHandle open = ambientOcclusion(
         graph, scene, settings.ambientOcclusion,
-        {static_cast<uint32_t>(input.stream), settings.seed, settings.pathtrace.sampler(), input.firstPoint},
-        seen);
+        {streamOf(input.stream), settings.seed, settings.pathtrace.sampler(), input.firstPoint}, seen);
     out.beauty =
         accumulate(graph, "ambient_occlusion", open, input.samplesBefore, input.samples, VarianceOf::Nothing);
     return out;
@@ -178,7 +183,7 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
     const ImageHandle ids = means[0].ids;  // from the first launch
     for (uint32_t done = 0, number = 0; done < input.samples; ++number) {
         launch.samples = std::min(input.launchSamples, input.samples - done);
-        launch.stream = static_cast<uint32_t>(input.stream + number);
+        launch.stream = streamOf(input.stream + number);
         launch.firstSample = input.firstSample + done;
         launch.firstPoint = input.firstPoint + done;
         launch.samplesBefore = done;

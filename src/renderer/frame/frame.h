@@ -24,7 +24,7 @@ struct FrameInput {
     uint64_t raysBefore = 0;                     ///< per pixel in this picture, before this frame
     uint32_t firstPoint = 0;                     ///< CameraLaunch::firstPoint
     float jitterSpan = 1.0f;                     ///< CameraLaunch::jitterSpan
-    uint64_t stream = 0;                         ///< stream of random numbers; unique for each launch
+    uint64_t stream = 0;                         ///< the launch's number, for streamOf(): modulo 2^32
     uint64_t samplesBefore = 0;                  ///< per pixel, in the running means
     uint32_t samples = 1;                        ///< per pixel, in this frame
     uint32_t launchSamples = UINT32_MAX;         ///< maximum per launch, if a denoiser follows

@@ -111,7 +111,7 @@ void FrameRenderer::record(const LaunchSamples& taken) {
     // Textures are filtered less the more rays share a pixel. Those of earlier frames, which the jitter's
     // points count, do not; nor do those of a denoiser's history.
     input.raysBefore = settings_.pipeline.accumulates() ? taken.first : 0;
-    input.firstPoint = static_cast<uint32_t>(taken.point);
+    input.firstPoint = static_cast<uint32_t>(taken.point);  // modulo 2^32, like streams of random numbers
     input.jitterSpan = jitterSpanOf(taken.alone ? 1 : 2);
     input.stream = taken.stream;
     input.samplesBefore = samplesInMean_;

@@ -26,7 +26,7 @@ uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& setti
 
 /// The samples per pixel that one launch takes.
 struct LaunchSamples {
-    uint64_t stream = 0;  ///< stream of random numbers; unique for each launch
+    uint64_t stream = 0;  ///< FrameInput::stream
     uint64_t first = 0;   ///< number of the first one, since the last reset
     uint64_t point = 0;   ///< the same over all frames: CameraLaunch::firstPoint
     uint32_t count = 1;

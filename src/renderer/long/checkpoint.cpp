@@ -46,6 +46,17 @@ void Checkpoint::save(const AccumulationHeader& header, const FrameSums& sums) {
     cost_ = saved_ - start;
 }
 
+bool Checkpoint::saveLast(const AccumulationHeader& header, const FrameSums& sums) {
+    try {
+        save(header, sums);
+        return true;
+    } catch (const OutputError& fault) {
+        // The picture may lie on another disk, or need less room than the sums.
+        log::warn("{}{}", fault.what(), exists() ? "; --resume goes on from an earlier state" : "");
+        return false;
+    }
+}
+
 void Checkpoint::saveIfDue(const AccumulationHeader& header, const FrameSums& sums) {
     if (!isDue()) return;
     try {

@@ -20,8 +20,9 @@ class Checkpoint {
     /// another render (naming the difference) or another shard. Warns if it comes from another device.
     Accumulation load(const AccumulationHeader& ours) const;
 
-    /// Writes the file completely or not at all.
-    void save(const AccumulationHeader& header, const FrameSums& sums);
+    /// Writes the file at the end of a run. If it cannot be written, warns, keeps the file as it was, and
+    /// returns false.
+    bool saveLast(const AccumulationHeader& header, const FrameSums& sums);
     /// Whether writing now takes at most a twentieth of the time.
     bool isDue() const;
     /// Writes the file if that is due. If it cannot be written, warns, and keeps the file as it was.
@@ -29,6 +30,10 @@ class Checkpoint {
 
   private:
     using Clock = std::chrono::steady_clock;
+
+    /// Writes the file completely or not at all. Throws OutputError.
+    void save(const AccumulationHeader& header, const FrameSums& sums);
+
     std::filesystem::path path_;
     Clock::time_point saved_ = Clock::now();
     Clock::duration cost_{};  ///< duration of the last save

@@ -65,11 +65,12 @@ uint64_t LongRender::framesFinished() const {
     return static_cast<uint64_t>(std::count(finished_.begin(), finished_.end(), true));
 }
 
-void LongRender::saveState(const FrameSums& sums, bool now) {
+/// A checkpoint that cannot be written is no reason to lose the picture.
+void LongRender::saveState(const FrameSums& sums, bool last) {
     if (!checkpoint_) return;
     if (!isStill()) header_.finished = rangesOf(finished_);
-    if (now) {
-        checkpoint_->save(header_, sums);
+    if (last) {
+        lostState_ = !checkpoint_->saveLast(header_, sums);
     } else {
         checkpoint_->saveIfDue(header_, sums);
     }
@@ -152,7 +153,7 @@ bool LongRender::renderBlocks(FrameSums& sums, const LongRenderEvents& events) {
             ++blocks_;
             if (checkpoint_ && checkpoint_->isDue()) {
                 settle();
-                saveState(sums, true);
+                saveState(sums, false);
             }
         }
     }

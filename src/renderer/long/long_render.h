@@ -48,6 +48,8 @@ class LongRender {
     uint64_t samplesToDo() const;
     /// Renders the rest. Returns false if time ran out first.
     bool run(const LongRenderEvents& events);
+    /// True if run() could not write the checkpoint at its end.
+    bool lostState() const { return lostState_; }
 
     uint64_t blocksFinished() const { return blocks_; }  ///< by this run
     uint64_t framesFinished() const;                     ///< of this shard, including earlier runs
@@ -69,7 +71,7 @@ class LongRender {
         return previewEvery_.count() > 0.0 && Clock::now() - previewed_ >= previewEvery_;
     }
     void showPreview(const FrameSums& sums, uint32_t done, const LongRenderEvents& events);
-    void saveState(const FrameSums& sums, bool now);
+    void saveState(const FrameSums& sums, bool last);
 
     BlockRenderer& renderer_;
     const Sequence& sequence_;
@@ -81,7 +83,8 @@ class LongRender {
     std::optional<Checkpoint> checkpoint_;
     std::optional<FrameSums> resumed_;  ///< sums of header_.frame
     std::vector<bool> finished_;        ///< by number within the shard; a still is one frame
-    uint64_t launched_ = 0;             ///< samples per pixel
+    bool lostState_ = false;
+    uint64_t launched_ = 0;  ///< samples per pixel
     uint64_t blocks_ = 0;
     double seconds_ = 0.0;
 };

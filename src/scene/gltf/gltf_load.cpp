@@ -37,6 +37,7 @@ class Loader {
             if (tree_.inScene[i]) addNode(i);
         }
         if (scene_.materials.empty()) scene_.materials.emplace_back();
+        scene_.files = document_.files().used();
         return std::move(scene_);
     }
 

@@ -120,6 +120,7 @@ TEST_F(GltfTest, ReadsDataUrisAndPercentEncodedNames) {
     file.document["buffers"][0]["uri"] = "with%20space.bin";
     put(path, file.document.dump());
     EXPECT_EQ(loadScene(path).triangleCount(), 1u);
+    EXPECT_THAT(loadScene(path).files, testing::ElementsAre(path, fs::canonical(folder) / "with space.bin"));
     file.document["buffers"][0] = {
         {"byteLength", 36},
         {"uri", "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}};

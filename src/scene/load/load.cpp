@@ -13,14 +13,21 @@
 namespace limpid::scene {
 namespace {
 
+std::string extensionOf(const std::filesystem::path& path) {
+    return lowerCase(path.extension().string());
+}
+
 Scene dispatch(const std::filesystem::path& path, const LoadOptions& options) {
-    const std::string extension = lowerCase(path.extension().string());
-    if (extension == ".gltf" || extension == ".glb") return gltf::load(path, options);
-    if (extension == ".obj") return loadObj(path, options);
-    throw InputError(path, "is not a supported scene format (.gltf, .glb, .obj)");
+    if (!isSceneFile(path)) throw InputError(path, "is not a supported scene format (.gltf, .glb, .obj)");
+    return extensionOf(path) == ".obj" ? loadObj(path, options) : gltf::load(path, options);
 }
 
 }  // namespace
+
+bool isSceneFile(const std::filesystem::path& path) {
+    const std::string extension = extensionOf(path);
+    return extension == ".gltf" || extension == ".glb" || extension == ".obj";
+}
 
 Scene loadScene(const std::filesystem::path& path, const LoadOptions& options) {
     try {

@@ -94,7 +94,8 @@ fs::path defaultAssetRoot(const fs::path& sceneFile) {
     return error || holdsHomeFolders(above) ? own : above;
 }
 
-SceneFiles::SceneFiles(fs::path sceneFile, const fs::path& assetRoot) : sceneFile_(std::move(sceneFile)) {
+SceneFiles::SceneFiles(fs::path sceneFile, const fs::path& assetRoot)
+    : sceneFile_(std::move(sceneFile)), used_{sceneFile_} {
     if (assetRoot.empty()) return;
     std::error_code error;
     assetRoot_ = fs::canonical(assetRoot, error);
@@ -129,6 +130,7 @@ std::vector<std::byte> SceneFiles::read(std::string_view reference, uint64_t max
     const fs::path path = resolve(reference);
     if (const auto fault = irregularity(path))
         throw InputError(sceneFile_, "refers to " + shown(reference) + ", which " + *fault);
+    used_.push_back(path);
     std::vector<std::byte> bytes = readFile(path, std::min(bytesLeft_, maxBytes));
     bytesLeft_ -= bytes.size();
     return bytes;

@@ -22,6 +22,8 @@ class SceneFiles {
     explicit SceneFiles(std::filesystem::path sceneFile, const std::filesystem::path& assetRoot = {});
 
     const std::filesystem::path& sceneFile() const { return sceneFile_; }
+    /// The scene file, and all that read() was asked for and found.
+    const std::vector<std::filesystem::path>& used() const { return used_; }
 
     /// Returns the file for `reference` (decoded, '/' or '\' between folders). Throws InputError naming the
     /// reference if it has a scheme, is absolute, or leaves the asset root (and the scene's folder) through
@@ -37,6 +39,7 @@ class SceneFiles {
   private:
     std::filesystem::path sceneFile_;
     std::filesystem::path assetRoot_;  ///< canonical; empty: only the scene's folder
+    std::vector<std::filesystem::path> used_;
     uint64_t bytesLeft_ = maxTotalBytes;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -182,6 +183,8 @@ struct Scene {
     Environment environment;
     Rig rig;
     int clip = none;  ///< index into rig.clips of the clip that plays
+    /// That it was loaded from, the scene file first; empty if it is built in.
+    std::vector<std::filesystem::path> files;
 
     size_t triangleCount() const;  ///< counts every instance
 };

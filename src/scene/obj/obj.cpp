@@ -99,6 +99,7 @@ Scene ObjLoader::run() {
     finishGroup();
     if (scene_.instances.empty()) throw InputError(files_.sceneFile(), "has no triangles to draw");
     if (scene_.materials.empty()) scene_.materials.push_back(greyMaterial());
+    scene_.files = files_.used();
     if (repaired_ > 0) log::warn("{}: {} normals repaired", files_.sceneFile().string(), repaired_);
     return std::move(scene_);
 }

@@ -129,6 +129,9 @@ TEST_F(ObjTest, ReadsMaps) {
     // v = 1 - v' of the file: 0 is 1 in the file, which is scaled to 3, which is -2 from the top
     EXPECT_EQ(m.baseColorTexture.rowU, vec3(2, 0, 0.5f));
     EXPECT_EQ(m.baseColorTexture.rowV, vec3(0, 3, -2));
+    const fs::path in = fs::canonical(folder);
+    EXPECT_THAT(scene.files,
+                testing::IsSupersetOf({folder / "scene.obj", in / "scene.mtl", in / "my picture.png"}));
 }
 
 /// Two by two pixels: red, green above blue, white; rows from bottom to top, as in TGA and BMP.

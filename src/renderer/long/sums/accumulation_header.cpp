@@ -10,7 +10,9 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "image/io/rows/limits.h"
+#include "image/tone_curve.h"
 #include "renderer/layers/layers.h"
+#include "renderer/layers/picture_name.h"
 
 namespace limpid {
 namespace {
@@ -134,6 +136,20 @@ std::vector<std::pair<uint64_t, uint64_t>> finishedOf(const HeaderReader& reader
     return ranges;
 }
 
+/// A fault of the file: the messages of the options do not fit.
+void checkLook(const HeaderReader& reader, const AccumulationHeader& header) {
+    try {
+        parseExposure(header.exposure);
+    } catch (const UsageError&) {
+        reader.fail(fmt::format("has an invalid exposure: '{}'", header.exposure));
+    }
+    try {
+        image::parseToneCurve(header.toneCurve);
+    } catch (const UsageError&) {
+        reader.fail(fmt::format("has an unknown tone curve: '{}'", header.toneCurve));
+    }
+}
+
 template <typename T>
 std::optional<std::string> difference(std::string_view name, const T& theirs, const T& ours) {
     if (theirs == ours) return std::nullopt;
@@ -251,6 +267,7 @@ AccumulationHeader headerFromJson(std::string_view text, const std::filesystem::
     header.exposure = reader.text("exposure", reader.at("exposure"));
     // Files of former versions have none.
     if (reader.has("tone_curve")) header.toneCurve = reader.text("tone_curve", reader.at("tone_curve"));
+    checkLook(reader, header);
     return header;
 }
 
