@@ -19,11 +19,14 @@ constexpr float shareOfNow = 0.3f;
 /// The share of a residual's energy that chance alone makes look like an error: more with few samples, whose
 /// noise has rare bright pixels.
 float shareOfChance(float samples) {
-    return 0.1f + 0.4f / samples;
+    return 0.1f + 0.8f / samples;
 }
-/// Noise is taken for an error only beyond so many times its variance: in the means over neighbours, at
-/// edges.
-constexpr float certaintyOfMeans = 8.0f, certaintyOfEdges = 2.0f;
+/// Means over neighbours are errors only beyond so many times the variance of noise.
+float certaintyOfMeans(float samples) {
+    return 8.0f * (1.0f + 4.0f / samples);
+}
+/// Edges' residuals are errors only beyond so many times the variance of noise.
+constexpr float certaintyOfEdges = 2.0f;
 /// Colours differ within a pixel at an edge by so many times the variance of those around it.
 constexpr float variationInEdges = 1.0f;
 /// Edges are believed where at least this share of the pixels around has none, and fully at a quarter more:
@@ -250,7 +253,7 @@ Image smoothErrors(const Statistics& s, const Image& residual) {
     const Image innerAround = boxMeans(boxMeans(s.inner, radiusOfMeans), radiusOfMeans);
     forEachPixel(energy.pixels.size(), [&](size_t p) {
         const float noise = noiseInMeans * s.noise.pixels[p] / std::max(innerAround.pixels[p], 0.05f);
-        const float share = 1.0f - certaintyOfMeans * noise / std::max(energy.pixels[p], 1e-12f);
+        const float share = 1.0f - certaintyOfMeans(s.samples) * noise / std::max(energy.pixels[p], 1e-12f);
         setColor(means, p, s.inner.pixels[p] * std::clamp(share, 0.0f, 1.0f) * colorAt(means, p));
     });
     return means;
