@@ -5,6 +5,7 @@
 
 #include "shot/estimate/reflection_motion.h"
 #include "shot/estimate/variance_estimate.h"
+#include "shot/frame/pixel_layers.h"
 #include "shot/motion/motion_search.h"
 #include "shot/recover/recovery.h"
 
@@ -34,11 +35,6 @@ void showSpecularAlbedo(HostFrame& frame) {
 
 /// Each frame is downloaded before the next one, so a second one would only take memory.
 const gpu::GraphOptions oneFrame{.framesInFlight = 1};
-
-float distanceOf(const HostFrame& frame, size_t p) {
-    const float share = frame.depth[4 * p + 1];
-    return share > 0.0f ? frame.depth[4 * p] / share : 0.0f;
-}
 
 /// True if two frames' pictures have the same layers.
 bool isAlike(const LayerMap& a, const LayerMap& b) {

@@ -28,6 +28,12 @@ inline float luminance(const vec3& c) {
     return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
 }
 
+/// Along the ray; 0 where nothing is seen.
+inline float distanceOf(const denoise::HostFrame& frame, size_t p) {
+    const float share = frame.depth[4 * p + 1];
+    return share > 0.0f ? frame.depth[4 * p] / share : 0.0f;
+}
+
 /// A pixel's centre in [-1, 1]^2, y up.
 vec2 onScreen(size_t p, const ShotLayers& layers);
 /// Through that point; its component along the camera's axis is 1.

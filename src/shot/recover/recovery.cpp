@@ -115,9 +115,10 @@ float productWithNeighbours(const Image& residual, size_t p) {
 Image innerPixels(const HostFrame& frame) {
     constexpr float bend = 0.02f, cosine = 0.9f;
     Image inner(frame.width, frame.height, 1, 1.0f);
+    constexpr float farAway = 1e4f;  // where nothing is seen
     const auto distance = [&](size_t p) {
-        const float share = frame.depth[4 * p + 1];
-        return share > 0.0f ? frame.depth[4 * p] / share : 1e4f;
+        const float z = distanceOf(frame, p);
+        return z > 0.0f ? z : farAway;
     };
     const auto normal = [&](size_t p) {
         return vec3(frame.normal[4 * p], frame.normal[4 * p + 1], frame.normal[4 * p + 2]);
