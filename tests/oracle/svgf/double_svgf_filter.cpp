@@ -13,6 +13,8 @@ constexpr double minCosine = 0.05;  // limits the slope of surfaces seen at graz
 constexpr double youngFrames = 4.0;
 /// With less in sum, neighbours show other surfaces.
 constexpr double leastWeights = 1e-3;
+/// The number of neighbours that must be alike to judge a firefly by.
+constexpr double leastAlike = 1.5;
 constexpr double largestHalf = 65504.0;
 /// Smaller sums of weights may underflow in float32.
 constexpr double minWeights = 1e-30;
@@ -197,27 +199,38 @@ Deviation deviationAround(const Neighbours& neighbours, size_t p, const std::vec
     return {svgfDeviation(mean.x, mean.y), rounding * mean.y};
 }
 
+/// Within this share of a bound, float32 may find the value on its other side.
+constexpr double doubt = 1e-3;
+
 bool isCloseToLeast(double weights) {
-    return std::abs(weights / leastWeights - 1.0) < 1e-3;
+    return std::abs(weights / leastWeights - 1.0) < doubt;
 }
 
 /// Mean and variance of the neighbours' m1.
 struct Around {
     double mean = 0.0, variance = 0.0, weights = 0.0;
+    double alike = 0.0;  ///< how many equal weights these amount to
     double error = 0.0;  ///< bounds float32's error of the variance
+
+    /// Whether enough neighbours are alike to dim by them, with bounds that are higher by this share.
+    bool tell(double higher = 0.0) const {
+        return weights >= leastWeights * (1.0 + higher) && alike >= leastAlike * (1.0 + higher);
+    }
 };
 
 Around meansAround(const Neighbours& neighbours, size_t p, const std::vector<dvec4>& moments) {
     Around result;
-    double squares = 0.0;
+    double squares = 0.0, squaredWeights = 0.0;
     neighbours.around(p, 1, 1, [&](size_t q, int i, int j) {
         if (p == q || moments[q].w <= 0.0) return;
         const double w = neighbours.weight(p, q, dvec2(i, j));
         result.weights += w;
+        squaredWeights += w * w;
         result.mean += w * moments[q].x;
         squares += w * moments[q].x * moments[q].x;
     });
     if (result.weights <= 0.0) return result;
+    result.alike = result.weights * result.weights / squaredWeights;
     result.mean /= result.weights;
     squares /= result.weights;
     result.variance = std::max(squares - result.mean * result.mean, 0.0);
@@ -243,11 +256,10 @@ SvgfDimming svgfDimming(const denoise::HostFrame& frame, SvgfSignal signal, cons
             const double limit = std::max(std::max(usual, 0.0) + 1e-6, l - params.phiColor * color[p].w);
             return l > limit ? limit / l : 1.0;
         };
-        const bool close = isCloseToLeast(around.weights), counts = around.weights >= leastWeights;
-        if (!counts && !close) continue;
-        if (counts) result.factor[p] = factor(around.variance);
+        if (!around.tell(-doubt)) continue;
+        if (around.tell()) result.factor[p] = factor(around.variance);
         result.least[p] = factor(around.variance - around.error);
-        result.most[p] = close ? 1.0 : factor(around.variance + around.error);
+        result.most[p] = around.tell(doubt) ? factor(around.variance + around.error) : 1.0;
     }
     return result;
 }

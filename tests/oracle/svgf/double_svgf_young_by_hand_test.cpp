@@ -1,6 +1,8 @@
 // Tests what the oracle of SVGF does to pixels with a short history, with numbers computed by hand.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/oracle/double_denoise_fixture.h"
 #include "tests/oracle/svgf/double_svgf.h"
 
@@ -66,6 +68,40 @@ TEST_F(SvgfYoungByHand, APixelWithoutNeighboursIsNotDimmed) {
     color[middle] = dvec4(20, 20, 20, 10);
     params.fireflies = 2.0;
     EXPECT_EQ(svgfDimming(frame, SvgfSignal::Diffuse, surfaces, color, moments, params).factor[middle], 1.0);
+}
+
+TEST_F(SvgfYoungByHand, OneNeighbourDoesNotTellAFirefly) {
+    const dvec3 other(1, 0, 0), same(0, 0, 1);
+    for (dvec3& normal : surfaces.normal) normal = other;
+    surfaces.normal[middle] = surfaces.normal[middle - 1] = same;
+    color[middle] = dvec4(20, 20, 20, 10);
+    params.fireflies = 2.0;
+    const auto dimming = [&] {
+        return svgfDimming(frame, SvgfSignal::Diffuse, surfaces, color, moments, params);
+    };
+    EXPECT_EQ(dimming().factor[middle], 1.0);
+    // Another one with the weight w: (1 + w)^2 = 1.5 (1 + w^2) for w = 2 - sqrt(3) = 0.268.
+    const auto weighs = [&](double w) {
+        const double cosine = 1.0 + std::log(w) / params.phiNormal;
+        surfaces.normal[middle + 1] = {std::sqrt(1.0 - cosine * cosine), 0.0, cosine};
+    };
+    weighs(0.26);
+    EXPECT_EQ(dimming().factor[middle], 1.0);
+    EXPECT_EQ(dimming().least[middle], 1.0);
+    weighs(0.268);
+    EXPECT_LT(dimming().least[middle], 0.06) << "float32 may dim it, or not";
+    EXPECT_EQ(dimming().most[middle], 1.0);
+    weighs(0.28);
+    EXPECT_NEAR(dimming().factor[middle], 1.001 / 20, 1e-6);
+    EXPECT_LT(dimming().most[middle], 0.06);
+    for (const size_t next : {middle - 1, middle + 1}) surfaces.normal[next] = {0.6, 0, 0.8};
+    EXPECT_EQ(dimming().factor[middle], 1.0) << "both show another surface";
+    // Slanted or curved surfaces: both are as little like it, but there are two of them.
+    for (const size_t next : {middle - 1, middle + 1}) {
+        weighs(0.01);
+        surfaces.normal[next] = surfaces.normal[middle + 1];
+    }
+    EXPECT_NEAR(dimming().factor[middle], 1.001 / 20, 1e-6);
 }
 
 TEST_F(SvgfYoungByHand, FillingWeighsPixelsByTheirFrames) {

@@ -30,6 +30,9 @@ LIMPID_CONST float SVGF_MIN_LAG = 0.1;       // smaller lags change little and c
 LIMPID_CONST float SVGF_MIN_SLOPE = 0.05;    // minimum cosine: more grazing angles use the slope of this one
 LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;  // minimum tolerance, relative to the distance
 LIMPID_CONST float SVGF_MIN_WEIGHTS = 1e-3;  // sums of weights below which neighbours show other surfaces
+// How many equal weights those of neighbours must amount to before a firefly is dimmed by them: (their sum)^2
+// / (sum of their squares). Between one, which has no deviation, and two.
+LIMPID_CONST float SVGF_MIN_ALIKE = 1.5;
 LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // minimum tolerance, relative to the luminance
 
 /// How tiles interpret the moments.

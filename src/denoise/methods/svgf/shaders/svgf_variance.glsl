@@ -22,27 +22,34 @@ bool isYoung(ivec2 at) {
     return at.x < int(params.width) && at.y < int(params.height) && LOAD_HALF4_ALPHA(color, at) == SVGF_STILL_YOUNG;
 }
 
-/// The sums of weight, luminance and squared luminance over the 8 neighbours. Their means are read from the moments,
-/// since other invocations dim `color` at the same time.
-vec3 luminancesAround(ivec2 at) {
+/// The sums of weight, luminance, squared luminance and squared weight over the 8 neighbours. Their means are read from
+/// the moments, since other invocations dim `color` at the same time.
+vec4 luminancesAround(ivec2 at) {
     const SurfaceCentre centre = centreOf(surfaceAt(at), at);
-    vec3 sums = vec3(0.0);
+    vec4 sums = vec4(0.0);
     for (int i = 0; i < 9; ++i) {
         const ivec2 from = ivec2(i % 3, i / 3) - 1, there = at + from;
         const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
         const vec2 m = imageLoad(moments, inside).xw;
         const float exponent = surfaceExponent(centre, surfaceAt(inside), perDepthOf(centre, from));
         if (i == 4 || inside != there || m.y <= 0.0) continue;
-        sums += exp2(exponent) * vec3(1.0, m.x, m.x * m.x);
+        const float weight = exp2(exponent);
+        sums += weight * vec4(1.0, m.x, m.x * m.x, weight);
     }
     return sums;
 }
 
+/// Whether the neighbours tell what light is usual here: not if they show other surfaces, nor if all but one do. One
+/// value has no deviation. By it, lone bright hairs would become as dark as the one hair beside them.
+bool tellUsual(vec4 sums) {
+    return sums.x >= SVGF_MIN_WEIGHTS && sums.x * sums.x >= SVGF_MIN_ALIKE * sums.w;
+}
+
 /// `light` and its deviation. The longer the history, the less one sample can do.
 vec4 withoutFirefly(ivec2 at, vec4 light, float frames) {
-    const vec3 sums = luminancesAround(at);
+    const vec4 sums = luminancesAround(at);
     const float l = luminance(light.rgb);
-    if (sums.x < SVGF_MIN_WEIGHTS) return light;
+    if (!tellUsual(sums)) return light;
     const vec2 mean = sums.yz / sums.x;
     const float deviation = sqrt(max(mean.y - mean.x * mean.x, 0.0));
     const float usual = mean.x + params.fireflies * frames * frames * deviation + SVGF_LUMINANCE_FLOOR * abs(mean.x);
