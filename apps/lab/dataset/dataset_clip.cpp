@@ -19,6 +19,9 @@ namespace {
 using image::Image;
 using image::LayeredImage;
 
+/// The seed of the second references differs by these bits from that of the first ones.
+constexpr uint32_t secondReferenceSeed = 0x51ED270Bu;
+
 /// The image whose name ends so, among those that the pass writes.
 gpu::ImageHandle imageOf(const gpu::FrameGraph& graph, const std::string& pass, std::string_view ending) {
     for (const gpu::ImageHandle image : graph.imagesWrittenBy(pass)) {
@@ -68,10 +71,12 @@ neural::Tensor cameraTensor(const CameraParams& camera) {
 void addFrame(gpu::Device& device, FrameRenderer& renderer, const std::string& prefix,
               neural::TensorFile& file) {
     gpu::FrameGraph& graph = renderer.graph();
+    const std::string lastLevel = fmt::format("svgf/level {}", denoise::SvgfSettings{}.levels);
     for (const std::string signal : {"diffuse", "specular"}) {
         const std::string reproject = "svgf/reproject " + signal;
         file.tensors[prefix + signal] = tensorOf(pictureOf(renderer, "svgf/variance " + signal, "color"));
         file.tensors[prefix + signal + ".first"] = tensorOf(pictureOf(renderer, "svgf/level 1", signal));
+        file.tensors[prefix + signal + ".svgf"] = tensorOf(pictureOf(renderer, lastLevel, signal));
         file.tensors[prefix + signal + ".past"] =
             tensorOf(stableLight(device, graph, imageOf(graph, reproject, "stable past")));
         file.tensors[prefix + signal + ".frames"] =
@@ -101,6 +106,15 @@ RenderSettings noisySettings(const ClipSettings& settings) {
     return render;
 }
 
+/// The clean beauty of the moment.
+neural::Tensor referenceOf(FrameRenderer& renderer, const Moment& moment) {
+    renderer.begin(moment);
+    while (renderer.launch()) {
+        if (ranks()) ranks()->beat();
+    }
+    return tensorOf(beautyOf(renderer.download()));
+}
+
 }  // namespace
 
 void addClip(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
@@ -113,6 +127,8 @@ void addClip(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequen
     render.samplesPerLaunch = 64;
     render.samplesPerLaunch = samplesPerLaunch(device, render);
     FrameRenderer clean(device, scene, render, settings.referenceSamples);
+    render.seed ^= secondReferenceSeed;
+    FrameRenderer cleanToo(device, scene, render, settings.referenceSamples);
     for (uint32_t frame = 0; frame <= settings.frames.back(); ++frame) {
         const Moment moment = sequence.moment(frame, settings.extent);
         noisy.render(moment);
@@ -121,11 +137,8 @@ void addClip(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequen
         const std::string prefix = fmt::format("{}/{}/", name, frame);
         addFrame(device, noisy, prefix, file);
         file.tensors[prefix + "camera"] = cameraTensor(moment.camera);
-        clean.begin(moment);
-        while (clean.launch()) {
-            if (ranks()) ranks()->beat();
-        }
-        file.tensors[prefix + "reference"] = tensorOf(beautyOf(clean.download()));
+        file.tensors[prefix + "reference"] = referenceOf(clean, moment);
+        file.tensors[prefix + "reference2"] = referenceOf(cleanToo, moment);
     }
 }
 

@@ -17,7 +17,7 @@ struct ClipSettings {
     gpu::Extent extent{256, 256};
     std::vector<uint32_t> frames{1, 3, 7, 15};  ///< the numbers of those that are stored, ascending
     uint32_t samples = 1;                       ///< per pixel and frame
-    uint32_t referenceSamples = 1024;           ///< independent of the others
+    uint32_t referenceSamples = 1024;           ///< of each of both references
     uint32_t seed = 0;
 };
 
@@ -28,11 +28,13 @@ struct ClipSettings {
 ///   below 0 where nothing is seen;
 /// - "NAME/F/SIGNAL.first" (4): the same after the first level of the filter, or where the history is short
 ///   after "svgf/young";
+/// - "NAME/F/SIGNAL.svgf" (4): the same after the last level, stabilised;
 /// - "NAME/F/SIGNAL.past" (3): stabilised light of the frame before;
 /// - "NAME/F/SIGNAL.frames" (1): the length of the history;
 /// - "NAME/F/LAYER" with the layers albedo, albedoSpecular, emission, normal (3), depth, roughness (1);
 /// - "NAME/F/svgf" (4): SVGF's picture;
-/// - "NAME/F/reference" (3): clean beauty through the pixels' centres;
+/// - "NAME/F/reference" (3): clean beauty through the pixels' centres, and "NAME/F/reference2" the same with
+///   noise that is independent of the first one's;
 /// - "NAME/F/camera" (4, 3; float32): the camera's right, up and forward vectors, and its origin.
 void addClip(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
              const ClipSettings& settings, const std::string& name, neural::TensorFile& file);
