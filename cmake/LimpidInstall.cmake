@@ -24,8 +24,8 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/install/limpidConfigVersi
 install(FILES ${PROJECT_BINARY_DIR}/install/limpidConfig.cmake ${PROJECT_BINARY_DIR}/install/limpidConfigVersion.cmake
   DESTINATION ${LIMPID_CMAKE_DIR} COMPONENT development)
 
-# The program looks for weights in ../share/limpid, the library in the folder that
-# src/denoise/api/network/CMakeLists.txt sets.
+# The program looks for KPCN's weights in ../share/limpid, the library in the folder that
+# src/denoise/api/network/CMakeLists.txt sets. Those of nano are part of the programs and libraries.
 if(LIMPID_APPS OR TARGET limpid_neural)
   install(FILES ${PROJECT_SOURCE_DIR}/weights/kpcn.safetensors ${PROJECT_SOURCE_DIR}/weights/kpcn-cis565.safetensors
     DESTINATION ${CMAKE_INSTALL_DATADIR}/limpid COMPONENT weights)

@@ -312,6 +312,24 @@ function(limpid_text TARGET)
   target_include_directories(${TARGET} PRIVATE ${GENERATED})
 endfunction()
 
+# limpid_bytes(TARGET a.bin ...): embeds files in TARGET as `limpid::embedded::a_bin` (std::span<const uint32_t>, padded
+# with zeros), declared in the generated header "a.bin.h".
+function(limpid_bytes TARGET)
+  set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/embedded)
+  foreach(SOURCE ${ARGN})
+    get_filename_component(FILE ${SOURCE} NAME)
+    string(MAKE_C_IDENTIFIER ${FILE} SYMBOL)
+    add_custom_command(
+      OUTPUT ${GENERATED}/${FILE}.h ${GENERATED}/${FILE}.cpp
+      COMMAND ${CMAKE_COMMAND} -D INPUT=${SOURCE} -D OUTPUT=${GENERATED}/${FILE} -D NAME=${SYMBOL}
+              -P ${PROJECT_SOURCE_DIR}/cmake/embed_bytes.cmake
+      DEPENDS ${SOURCE} ${PROJECT_SOURCE_DIR}/cmake/embed_bytes.cmake
+      VERBATIM)
+    target_sources(${TARGET} PRIVATE ${GENERATED}/${FILE}.h ${GENERATED}/${FILE}.cpp)
+  endforeach()
+  target_include_directories(${TARGET} PRIVATE ${GENERATED})
+endfunction()
+
 if(LIMPID_TESTS)
   add_custom_target(limpid_fast_tests)
 endif()

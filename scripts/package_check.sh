@@ -67,6 +67,7 @@ inside limpid render builtin:cornell -o /check/cornell.png --width 64 --height 3
 inside limpid render builtin:cornell-moving -o /check/noisy.%d.exr --width 64 --height 36 --frames 3 --spp 1 \
     --aov all --jitter off --device cpu
 inside limpid denoise /check/noisy.%d.exr -o /check/clean.%d.png --denoiser svgf --device cpu
+inside limpid denoise /check/noisy.%d.exr -o /check/nano.%d.png --denoiser nano --device cpu
 inside limpid render builtin:cornell -o /check/kpcn.png --width 64 --height 36 --spp 8 --denoiser kpcn --device cpu
 cp -r examples docs python/tests "$root/check"
 inside python3 /check/examples/python/denoise_sequence.py cpu

@@ -2,6 +2,7 @@
 // its pipelines were prepared, and how long preparing them takes with and without an earlier run's pipeline
 // cache.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <numeric>
@@ -44,6 +45,17 @@ denoise::HostFrame noisyWall(uint32_t width, uint32_t height) {
     return frame;
 }
 
+bool canBeMeasured(const denoise::Denoiser& denoiser) {
+    return !denoiser.network && !denoiser.oneChannel;
+}
+
+std::string measurable() {
+    std::vector<std::string_view> names;
+    for (const denoise::Denoiser& denoiser : denoise::denoisers())
+        if (canBeMeasured(denoiser)) names.push_back(denoiser.name);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
 double millisecondsOf(const std::function<void()>& work) {
     const auto start = std::chrono::steady_clock::now();
     work();
@@ -52,8 +64,7 @@ double millisecondsOf(const std::function<void()>& work) {
 
 void run(const FirstFrameBench& o) {
     const denoise::Denoiser* method = denoise::findDenoiser(o.denoiser);
-    if (!method || method->network || method->oneChannel)
-        throw UsageError("--denoiser: temporal, atrous or svgf");
+    if (!method || !canBeMeasured(*method)) throw UsageError("--denoiser: one of " + measurable());
     const denoise::HostFrame host = noisyWall(o.width, o.height);
     gpu::Device device(o.device.device);
     loadPipelines(device, pipelineFile(device));
@@ -93,7 +104,7 @@ void addFirstFrameBench(CLI::App& bench) {
         "first-frame",
         "The first frame of a denoiser beside later ones, and how long preparing pipelines takes");
     auto o = std::make_shared<FirstFrameBench>();
-    command->add_option("--denoiser", o->denoiser, "temporal, atrous or svgf (svgf)");
+    command->add_option("--denoiser", o->denoiser, "Denoiser: " + measurable() + " (svgf)");
     command->add_option("--width", o->width, "Pixels (1280)")->check(CLI::Range(1, 16384));
     command->add_option("--height", o->height, "Pixels (720)")->check(CLI::Range(1, 16384));
     command->add_option("--frames", o->frames, "Later frames (20)")->check(CLI::Range(1, 10000));

@@ -264,6 +264,12 @@ TEST_F(StudioTest, TellsWhyHistoriesWereKeptOrRejected) {
     EXPECT_EQ(listed->facts.frames, cut->facts.frames) << "the frame had it already";
     const auto closed = rest(*studio, studio->edit({{"pass", ""}}));
     EXPECT_FALSE(closed->reasons);
+    rest(*studio, studio->edit({{"denoiser", "nano"}}));
+    const auto network = rest(*studio, studio->edit({{"pass", "nano/filter 0"}}));
+    EXPECT_TRUE(network->inspected);
+    ASSERT_TRUE(network->reasons) << "those of SVGF, from which it goes on";
+    EXPECT_THAT(historyText(*network->reasons, {0.5f, 0.5f}), HasSubstr("history"));
+    rest(*studio, studio->edit({{"pass", ""}}));
     rest(*studio, studio->edit({{"denoiser", "bilateral"}}));
     const auto single = rest(*studio, studio->edit({{"pass", "bilateral"}}));
     EXPECT_TRUE(single->inspected);
@@ -298,7 +304,7 @@ double meanDifference(const Picture& a, const Picture& b) {
     return sum / static_cast<double>(4 * a.texels.size());
 }
 
-/// Without their parts, four methods have nothing in common but their input: they must show the same.
+/// Without their parts, these methods have nothing in common but their input: they must show the same.
 TEST_F(StudioTest, DenoisersWithoutTheirPartsShowTheirInput) {
     StudioSettings settings = small();
     settings.resolution = Resolution::Full;  // else a busy machine shrinks some of the pictures
@@ -307,7 +313,7 @@ TEST_F(StudioTest, DenoisersWithoutTheirPartsShowTheirInput) {
     const json off{{"part.temporal", false}, {"part.spatial", false}, {"part.demodulation", false}};
     const json on{{"part.temporal", true}, {"part.spatial", true}, {"part.demodulation", true}};
     std::shared_ptr<const Picture> input;
-    for (const char* denoiser : {"temporal", "svgf", "atrous", "bilateral"}) {
+    for (const char* denoiser : {"temporal", "svgf", "nano", "atrous", "bilateral"}) {
         const auto whole = rest(*studio, studio->edit({{"denoiser", denoiser}}));
         const auto without = rest(*studio, studio->edit(off));
         if (!input) input = without->picture;

@@ -109,14 +109,18 @@ LIMPID_API limpid_result limpid_device_load_pipeline_cache(limpid_device* device
 typedef struct limpid_denoiser limpid_denoiser;
 
 typedef enum limpid_method {
-    LIMPID_METHOD_SVGF = 0,      /* spatiotemporal variance-guided filtering: the best of them */
+    LIMPID_METHOD_SVGF = 0,      /* spatiotemporal variance-guided filtering: the best without a network */
     LIMPID_METHOD_ATROUS = 1,    /* temporal accumulation, then the edge-avoiding a-trous filter */
     LIMPID_METHOD_TEMPORAL = 2,  /* temporal accumulation alone: each pixel's mean follows its surface */
     LIMPID_METHOD_BILATERAL = 3, /* a joint bilateral filter of one frame, without history: the simplest method */
     /* For ambient occlusion or a shadow mask alone: one number from 0 to 1 for each pixel, the first component of
      * LIMPID_INPUT_RADIANCE. It is COLOR as grey, limited to 0 to 1. Better for them than SVGF, in less time and
      * memory. For two masks, make two denoisers. */
-    LIMPID_METHOD_VISIBILITY = 4
+    LIMPID_METHOD_VISIBILITY = 4,
+    /* SVGF, and behind it a small trained network, which predicts the weights of a filter and how much of SVGF's
+     * result to replace. Inputs, outputs and `signals` are those of SVGF, and its parameters `svgf.` count, too.
+     * Closer to the truth, about as stable, slower. Needs no files. */
+    LIMPID_METHOD_NANO = 5
 } limpid_method;
 
 /* The images of a frame, by content. docs/embedding.md lists which ones a method needs, and the effect of leaving one
@@ -149,8 +153,8 @@ typedef enum limpid_input {
 
 typedef enum limpid_output {
     LIMPID_OUTPUT_COLOR = 0,    /* rgb: the denoised picture including emission and albedo; a: 1 */
-    LIMPID_OUTPUT_RADIANCE = 1, /* rgb: the denoised LIMPID_INPUT_RADIANCE. SVGF only. */
-    LIMPID_OUTPUT_SPECULAR = 2, /* rgb: the denoised LIMPID_INPUT_SPECULAR. SVGF with two signals only. */
+    LIMPID_OUTPUT_RADIANCE = 1, /* rgb: the denoised LIMPID_INPUT_RADIANCE. SVGF and NANO only. */
+    LIMPID_OUTPUT_SPECULAR = 2, /* rgb: the denoised LIMPID_INPUT_SPECULAR. The same with two signals only. */
     LIMPID_OUTPUT_MAX = 8       /* room for more */
 } limpid_output;
 
@@ -200,8 +204,8 @@ typedef struct limpid_denoiser_desc {
     size_t size;
     limpid_method method;
     uint32_t width, height; /* pixels of all images, 1 to 32768, and no more than the device's images may have */
-    /* 0 or 1: RADIANCE is all light that is filtered. 2: RADIANCE is diffuse and SPECULAR specular light; takes twice
-     * the time. */
+    /* 0 or 1: RADIANCE is all light that is filtered. 2: RADIANCE is diffuse and SPECULAR specular light; takes up
+     * to twice the time. */
     uint32_t signals;
     /* Not 0: radiance is already divided by albedo, and so are the outputs. The albedo inputs are then not needed, and
      * COLOR is the sum of the signals and emission. */
@@ -241,8 +245,9 @@ typedef struct limpid_camera {
 
 /* Creates a denoiser, and compiles its pipelines on several threads if `device` does not have them yet. Its images are
  * created for the first frame; limpid_denoiser_memory() returns their size. `*denoiser` is NULL on failure.
- * LIMPID_ERROR_UNSUPPORTED: the device has no images of this size (its maxImageDimension2D), or it is a GPU and has no
- * buffers of 8 bytes a pixel (maxStorageBufferRange, maxBufferSize, maxMemoryAllocationSize). */
+ * LIMPID_ERROR_UNSUPPORTED: the device has no images of this size (its maxImageDimension2D), or no buffers that large
+ * (maxStorageBufferRange, maxBufferSize, maxMemoryAllocationSize): they have 8 bytes a pixel on GPUs, and for
+ * LIMPID_METHOD_NANO 32 bytes a pixel on all devices, with both sides rounded up to multiples of 16. */
 LIMPID_API limpid_result limpid_denoiser_create(limpid_device* device, const limpid_denoiser_desc* desc,
                                                 limpid_denoiser** denoiser);
 /* NULL is ignored. Everything it has recorded must be finished on the device. */

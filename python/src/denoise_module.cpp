@@ -255,7 +255,8 @@ void addTables(py::module_& m) {
               {"atrous", LIMPID_METHOD_ATROUS},
               {"temporal", LIMPID_METHOD_TEMPORAL},
               {"bilateral", LIMPID_METHOD_BILATERAL},
-              {"visibility", LIMPID_METHOD_VISIBILITY}});
+              {"visibility", LIMPID_METHOD_VISIBILITY},
+              {"nano", LIMPID_METHOD_NANO}});
     addNames(m, "NORMAL_ENCODINGS",
              {{"signed", LIMPID_NORMAL_SIGNED},
               {"unorm", LIMPID_NORMAL_UNORM},

@@ -56,6 +56,11 @@ float edgeFrames(const ShotLayers& layers, const denoise::Denoiser& method) {
     return few && !layers.isTransparent && !method.network ? framesOfEdges : 1.0f;
 }
 
+/// SVGF, for which recovery was made, and what goes on from it.
+bool filtersBySvgf(const denoise::Denoiser& method) {
+    return std::ranges::find(method.groups, "svgf") != method.groups.end();
+}
+
 /// Where light was divided by it: where a surface is seen.
 void multiplyByAlpha(const image::Image& alpha, const HostFrame& frame, CleanPicture& picture) {
     const auto multiply = [&](std::vector<float>& colors) {
@@ -187,7 +192,7 @@ void ShotDenoiser::coverFilm(Picture& picture, const LoadedFrame& file, size_t i
 bool ShotDenoiser::recovers(const LoadedFrame& frame, size_t index) const {
     if (frame.own || options_.recover == Recover::Off) return false;
     return options_.recover == Recover::On ||
-           (frame.maps[index].hasIndependentPixels && options_.method->name == "svgf");
+           (frame.maps[index].hasIndependentPixels && filtersBySvgf(*options_.method));
 }
 
 /// Each group is one signal with the frame's guides. Its light takes the place of the frame's, since a copy

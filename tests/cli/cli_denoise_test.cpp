@@ -53,7 +53,7 @@ TEST_F(CliDenoiseTest, GivesExactlyWhatTheRenderersOwnPipelineGives) {
 
 /// What only a filter reads is stored in halves.
 TEST_F(CliDenoiseTest, PicturesWithoutTheirLayersDifferByLittle) {
-    for (const std::string method : {"temporal", "atrous", "svgf"}) {
+    for (const std::string method : {"temporal", "atrous", "svgf", "nano"}) {
         for (const std::string layers : {"", " --aov all"}) {
             const Result rendered =
                 run("render builtin:cornell-moving -o " +

@@ -149,6 +149,28 @@ TEST_F(CliShotTest, FilesNamedLikeCyclesComeOutNearlyAsCleanAsOurOwn) {
     }
     EXPECT_EQ(output.parts()[0].texts.at("cycles.ViewLayer.samples"), "1");
     EXPECT_EQ(output.parts()[0].texts.at("limpid.denoiser"), "svgf");
+    ASSERT_EQ(denoise("own.%02d.exr", "nano-own.%02d.exr", "--denoiser nano").code, 0);
+    const Result network =
+        denoise("cycles.%02d.exr", "nano.%02d.exr", "--denoiser nano --set taa.frames=1 --bidirectional");
+    ASSERT_EQ(network.code, 0) << network.output;
+    double ofOwn = 0.0, ofBoth = 0.0;
+    for (const char* frame : {"00", "05", "07"}) {
+        const std::string end = std::string(".") + frame + ".exr";
+        const auto reference = colors("reference" + end);
+        ofOwn += meanError(colors("nano-own" + end), reference);
+        ofBoth += meanError(colors("nano" + end, "ViewLayer.Combined"), reference);
+    }
+    fmt::print("by nano: own {:.4f}, named like Cycles both ways {:.4f}\n", ofOwn, ofBoth);
+    EXPECT_LT(ofOwn, 1.1 * own);
+    EXPECT_LT(ofBoth, ofOwn);
+    const auto beautyOf = [&](const std::string& options) {
+        EXPECT_EQ(denoise("cycles.05.exr", "one.exr", options).code, 0) << options;
+        return colors("one.exr", "ViewLayer.Combined");
+    };
+    for (const std::string method : {"svgf", "nano"})
+        EXPECT_EQ(beautyOf("--denoiser " + method), beautyOf("--denoiser " + method + " --recover on"));
+    EXPECT_EQ(beautyOf("--denoiser atrous"), beautyOf("--denoiser atrous --recover off"));
+    EXPECT_NE(beautyOf("--denoiser nano"), beautyOf("--denoiser nano --recover off"));
 }
 
 /// Beauty, albedo and normal are what other denoisers take: motion is searched, in both directions.
@@ -257,7 +279,7 @@ TEST_F(CliShotTest, ShardsAndInterruptedRunsMakeTheSameFiles) {
     EXPECT_EQ(denoise("own.%02d.exr", "own.%02d.exr").code, 2) << "in place";
     for (const char* wrong : {"--map beauty=", "--shard 0/2", "--shard 3/2", "--shard 1", "--frames 5-2",
                               "--frames x", "--cuts 1,x", "--on-error never", "--strength 2", "--map albedo",
-                              "--bidirectional --denoiser kpcn"})
+                              "--bidirectional --denoiser kpcn", "--bidirectional --denoiser bilateral"})
         EXPECT_EQ(denoise("own.%02d.exr", "few.%02d.exr", wrong).code, 2) << wrong;
 }
 
@@ -325,18 +347,20 @@ TEST_F(CliShotTest, StrengthMixesWithTheInputAndGroupsSumUpToTheBeauty) {
     file.add("ViewLayer.Combined_key", "RGB", key, Storage::Float);
     file.add("ViewLayer.Combined_fill", "RGB", fill, Storage::Float);
     image::writeExr(path("groups.exr"), file);
-    const Result result = denoise("groups.exr", "groups-clean.exr");
-    ASSERT_EQ(result.code, 0) << result.output;
-    const auto sum = colors("groups-clean.exr", "ViewLayer.Combined");
-    const auto a = colors("groups-clean.exr", "ViewLayer.Combined_key");
-    const auto b = colors("groups-clean.exr", "ViewLayer.Combined_fill");
-    double error = 0.0, total = 0.0;
-    for (size_t i = 0; i < sum.size(); ++i) {
-        error += std::abs(static_cast<double>(a[i] + b[i] - sum[i]));
-        total += static_cast<double>(sum[i]);
+    for (const char* method : {"svgf", "nano"}) {
+        const Result result = denoise("groups.exr", "groups-clean.exr", std::string("--denoiser ") + method);
+        ASSERT_EQ(result.code, 0) << result.output;
+        const auto sum = colors("groups-clean.exr", "ViewLayer.Combined");
+        const auto a = colors("groups-clean.exr", "ViewLayer.Combined_key");
+        const auto b = colors("groups-clean.exr", "ViewLayer.Combined_fill");
+        double error = 0.0, total = 0.0;
+        for (size_t i = 0; i < sum.size(); ++i) {
+            error += std::abs(static_cast<double>(a[i] + b[i] - sum[i]));
+            total += static_cast<double>(sum[i]);
+        }
+        EXPECT_LT(error, 1e-3 * total) << method;
+        EXPECT_NE(a, key.pixels) << method;
     }
-    EXPECT_LT(error, 1e-3 * total);
-    EXPECT_NE(a, key.pixels);
 }
 
 TEST_F(CliShotTest, LayersMayBeFilesOfTheirOwn) {

@@ -291,6 +291,11 @@ TEST(QualityMethods, AVariantIsOfTheDenoiserWhoseParametersItNames) {
         ElementsAre("temporal", "atrous", "svgf", "atrous"));
     EXPECT_THAT(denoisersOf({{"atrous"}, {"temporal.normal=0.5"}}), ElementsAre("atrous", "atrous"))
         << "which has no parameters of a denoiser of that name, but those of temporal accumulation";
+    EXPECT_THAT(denoisersOf({{"nano", "temporal"}, {"svgf.levels=1,taa.frames=1", "taa.frames=1"}}),
+                ElementsAre("nano", "temporal", "nano", "temporal"))
+        << "which reads svgf's parameters, too";
+    EXPECT_THAT(denoisersOf({{"svgf", "nano"}, {"svgf.levels=1", "nano.strength=0.5"}}),
+                ElementsAre("svgf", "nano", "svgf", "nano"));
     const auto methods = methodsOf({{"svgf"}, {"svgf.levels=1,svgf.wide=on"}}, {});
     EXPECT_EQ(methods[1].name, "svgf.levels=1,svgf.wide=on");
     EXPECT_EQ(methods[1].settings.denoisers.svgf.levels, 1);

@@ -104,8 +104,10 @@ TEST_P(ColorDenoiserSuite, TexturesUnderConstantLightStaySharp) {
     for (int number = 0; number < frames; ++number) {
         HostFrame frame = scene.frame(number, columns, rows, 1);
         std::fill(frame.specular.begin(), frame.specular.end(), 0.0f);
-        for (size_t i = 0; i < frame.albedo.size(); ++i)
-            frame.diffuse[i] = frame.depth[i / 4 * 4 + 1] > 0.0f ? std::max(frame.albedo[i], 0.1f) : 0.0f;
+        for (size_t i = 0; i < frame.albedo.size(); ++i) {
+            frame.albedo[i] = std::max(frame.albedo[i], 0.1f);  // no method's minimum counts
+            frame.diffuse[i] = frame.depth[i / 4 * 4 + 1] > 0.0f ? frame.albedo[i] : 0.0f;
+        }
         const std::vector<float> picture = denoise(method(), frame);
         for (size_t i = 0; i < picture.size(); ++i) {
             if (i % 4 == 3) continue;

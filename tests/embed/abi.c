@@ -1,10 +1,12 @@
-/* Prints the sizes, offsets and values that are compiled into programs. They must not change without a new SONAME. */
+/* Prints the sizes, offsets and values that are compiled into programs. They must not change without a new
+ * SONAME. */
 #include <limpid/denoise_vulkan.h>
 #include <stddef.h>
 #include <stdio.h>
 
 #define STRUCT(type) printf("struct %s %zu\n", #type, sizeof(type))
-#define MEMBER(type, member) printf("  %s %zu %zu\n", #member, offsetof(type, member), sizeof(((type*)0)->member))
+#define MEMBER(type, member) \
+    printf("  %s %zu %zu\n", #member, offsetof(type, member), sizeof(((type*)0)->member))
 #define VALUE(name) printf("  %s %d\n", #name, (int)name)
 
 int main(void) {
@@ -25,6 +27,9 @@ int main(void) {
     VALUE(LIMPID_METHOD_SVGF);
     VALUE(LIMPID_METHOD_ATROUS);
     VALUE(LIMPID_METHOD_TEMPORAL);
+    VALUE(LIMPID_METHOD_BILATERAL);
+    VALUE(LIMPID_METHOD_VISIBILITY);
+    VALUE(LIMPID_METHOD_NANO);
     printf("enum limpid_input %zu\n", sizeof(limpid_input));
     VALUE(LIMPID_INPUT_RADIANCE);
     VALUE(LIMPID_INPUT_SPECULAR);

@@ -192,13 +192,19 @@ const Variant oneSignal{"--denoiser svgf --set svgf.separate=off", LIMPID_METHOD
                     {{"svgf.alpha", 0.3}, {"taa.frames", 8}}},
     atrous{"--denoiser atrous", LIMPID_METHOD_ATROUS, 1, {}},
     temporal{"--denoiser temporal", LIMPID_METHOD_TEMPORAL, 1, {}},
-    bilateral{"--denoiser bilateral", LIMPID_METHOD_BILATERAL, 1, {}};
+    bilateral{"--denoiser bilateral", LIMPID_METHOD_BILATERAL, 1, {}},
+    nano{"--denoiser nano", LIMPID_METHOD_NANO, 2, {}},
+    nanoOfOne{"--denoiser nano --set svgf.separate=off --set nano.strength=0.5",
+              LIMPID_METHOD_NANO,
+              1,
+              {{"nano.strength", 0.5}}};
 
 TEST_F(EmbedFilesTest, GivesThePicturesOfTheProgramBitForBit) {
     roundCameras();
     roundGuides();
     // Not bilateral: it reads normals that have been packed once more.
-    for (const Variant& variant : {oneSignal, twoSignals, otherParameters, atrous, temporal}) {
+    for (const Variant& variant :
+         {oneSignal, twoSignals, otherParameters, atrous, temporal, nano, nanoOfOne}) {
         const Difference difference = differenceOf(variant);
         EXPECT_EQ(difference.values, 0u) << variant.options << ": at most " << difference.largest;
     }

@@ -66,6 +66,7 @@ limpid_host_frame hostFrame(const HostFrame& frame, std::vector<float>& depths, 
     given.inputs[LIMPID_INPUT_NORMAL] = imageOf(frame.normal);
     given.inputs[LIMPID_INPUT_MOTION] = imageOf(frame.motion);
     given.inputs[LIMPID_INPUT_PREVIOUS_NORMAL] = imageOf(frame.previousNormal);
+    given.inputs[LIMPID_INPUT_ROUGHNESS] = {frame.roughness.data(), 1, 4 * sizeof(float), 0};
     depths.resize(frame.pixelCount());
     ids.resize(frame.pixelCount());
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
@@ -93,22 +94,27 @@ double rmsDifference(const std::vector<float>& a, const std::vector<float>& b) {
     return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-TEST_F(HostFramesTest, SvgfIsTheSameInsideAndOutside) {
-    create(LIMPID_METHOD_SVGF);
-    const SyntheticScene scene({.objectMoves = true});
-    std::vector<float> depths, ids, result, inside;
-    for (int number = 0; number < 6; ++number) {
-        const HostFrame frame = embeddable(scene, number);
-        const limpid_host_frame given = hostFrame(frame, depths, ids, result);
-        ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
-        filters_ = gpu::filterBacking(device());
-        inside = denoise(*denoise::findDenoiser("svgf"), frame);
+TEST_F(HostFramesTest, SvgfAndNanoAreTheSameInsideAndOutside) {
+    for (const auto& [method, name] : {std::pair{LIMPID_METHOD_SVGF, "svgf"}, {LIMPID_METHOD_NANO, "nano"}}) {
+        SCOPED_TRACE(name);
+        create(method);
+        const SyntheticScene scene({.objectMoves = true});
+        std::vector<float> depths, ids, result, inside;
+        graph_.resetHistories();
+        for (int number = 0; number < 6; ++number) {
+            const HostFrame frame = embeddable(scene, number);
+            const limpid_host_frame given = hostFrame(frame, depths, ids, result);
+            ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+            filters_ = gpu::filterBacking(device());
+            inside = denoise(*denoise::findDenoiser(name), frame);
+        }
+        // Not equal bit for bit: cameras are converted to matrices and back, which rounds, and pixels without
+        // a hit hold other values.
+        EXPECT_LT(rmsDifference(result, inside), 2e-3);
+        const std::vector<float> truth = scene.truth(5, width, height);
+        EXPECT_LT(rmsDifference(result, truth), 0.5 * rmsDifference(embeddable(scene, 5).diffuse, truth));
+        limpid_denoiser_destroy(std::exchange(denoiser_, nullptr));
     }
-    // Not equal bit for bit: cameras are converted to matrices and back, which rounds, and pixels without a
-    // hit hold other values.
-    EXPECT_LT(rmsDifference(result, inside), 2e-3);
-    const std::vector<float> truth = scene.truth(5, width, height);
-    EXPECT_LT(rmsDifference(result, truth), 0.5 * rmsDifference(embeddable(scene, 5).diffuse, truth));
 }
 
 /// One float a pixel in and out, and no albedo.
@@ -138,20 +144,34 @@ TEST_F(HostFramesTest, AMaskIsTheSameInsideAndOutside) {
 }
 
 TEST_F(HostFramesTest, SignalsAddUpToThePicture) {
-    create(LIMPID_METHOD_SVGF);
     const SyntheticScene scene({});
-    std::vector<float> depths, ids, color;
-    std::vector<float> radiance(3 * width * height), specular(4 * width * height);
     const HostFrame frame = embeddable(scene, 0);
-    limpid_host_frame given = hostFrame(frame, depths, ids, color);
-    given.outputs[LIMPID_OUTPUT_RADIANCE] = {radiance.data(), 3, 0, 0};
-    given.outputs[LIMPID_OUTPUT_SPECULAR] = {specular.data(), 4, 0, 0};
-    ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
-    for (size_t p = 0; p < frame.pixelCount(); ++p)
-        for (size_t c = 0; c < 3; ++c)
-            ASSERT_NEAR(color[4 * p + c],
-                        radiance[3 * p + c] + specular[4 * p + c] + frame.emission[4 * p + c],
-                        1e-4f * (1.0f + color[4 * p + c]));
+    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_NANO}) {
+        for (const uint32_t signals : {1u, 2u}) {
+            create(method, signals);
+            std::vector<float> depths, ids, color, alone;
+            std::vector<float> radiance(3 * width * height), specular(4 * width * height, 0.0f);
+            limpid_host_frame given = hostFrame(frame, depths, ids, alone);
+            ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+            given = hostFrame(frame, depths, ids, color);
+            given.reset = 1;
+            given.outputs[LIMPID_OUTPUT_RADIANCE] = {radiance.data(), 3, 0, 0};
+            if (signals == 2) given.outputs[LIMPID_OUTPUT_SPECULAR] = {specular.data(), 4, 0, 0};
+            ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+            EXPECT_EQ(color, alone) << "the picture does not depend on what else is wanted";
+            for (size_t p = 0; p < frame.pixelCount(); ++p)
+                for (size_t c = 0; c < 3; ++c)
+                    ASSERT_NEAR(color[4 * p + c],
+                                radiance[3 * p + c] + specular[4 * p + c] + frame.emission[4 * p + c],
+                                1e-4f * (1.0f + color[4 * p + c]))
+                        << method;
+            if (signals == 1) {
+                given.outputs[LIMPID_OUTPUT_SPECULAR] = {specular.data(), 4, 0, 0};
+                EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT);
+            }
+            limpid_denoiser_destroy(std::exchange(denoiser_, nullptr));
+        }
+    }
 }
 
 TEST_F(HostFramesTest, AResetForgetsThePast) {
@@ -171,8 +191,8 @@ TEST_F(HostFramesTest, AResetForgetsThePast) {
 }
 
 TEST_F(HostFramesTest, EveryMethodRunsAndListsItsParameters) {
-    for (const limpid_method method :
-         {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL, LIMPID_METHOD_VISIBILITY}) {
+    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL,
+                                       LIMPID_METHOD_VISIBILITY, LIMPID_METHOD_NANO}) {
         create(method, 1);
         limpid_parameter p;
         uint32_t count = 0;
@@ -350,6 +370,10 @@ TEST_F(HostFramesTest, MemoryIsKnownBeforehand) {
     constexpr uint64_t noSecond = 8 + 4;  // one pixel of light and of stable light that nothing writes
     EXPECT_EQ(one, pixels * 56 + tiles * 20 + largeTiles * 4 + standIn + noSecond);
     EXPECT_EQ(two, pixels * 112 + tiles * 40 + largeTiles * 8 + standIn);
+    uint64_t nano = 0;
+    desc.method = LIMPID_METHOD_NANO;
+    ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &nano), LIMPID_OK);
+    EXPECT_GT(nano, two);
 }
 
 }  // namespace

@@ -72,7 +72,8 @@ TEST_F(VulkanFramesTest, ThreeFramesAreInFlight) {
 }
 
 TEST_F(VulkanFramesTest, MakesAllPipelinesBeforehand) {
-    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL}) {
+    for (const limpid_method method :
+         {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL, LIMPID_METHOD_NANO}) {
         limpid_denoiser_desc desc = {};
         desc.method = method;
         limpid_denoiser* denoiser = create(desc);
@@ -88,8 +89,9 @@ TEST_F(VulkanFramesTest, MakesAllPipelinesBeforehand) {
 
 /// The same with one signal, and the inputs that most programs have.
 TEST_F(VulkanFramesTest, MakesThePipelinesOfFewInputsBeforehand) {
-    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL,
-                                       LIMPID_METHOD_BILATERAL, LIMPID_METHOD_VISIBILITY}) {
+    for (const limpid_method method :
+         {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL, LIMPID_METHOD_BILATERAL,
+          LIMPID_METHOD_VISIBILITY, LIMPID_METHOD_NANO}) {
         limpid_denoiser_desc desc = {};
         desc.method = method;
         desc.signals = 1;
@@ -130,8 +132,9 @@ TEST_F(VulkanFramesTest, NeedsPreviousMatricesOnlyForHistories) {
 }
 
 TEST_F(VulkanFramesTest, PicturesInHalvesAreThoseInFloatsRounded) {
-    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL,
-                                       LIMPID_METHOD_BILATERAL, LIMPID_METHOD_VISIBILITY}) {
+    for (const limpid_method method :
+         {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL, LIMPID_METHOD_BILATERAL,
+          LIMPID_METHOD_VISIBILITY, LIMPID_METHOD_NANO}) {
         limpid_denoiser_desc desc = {};
         desc.method = method;
         desc.signals = method == LIMPID_METHOD_VISIBILITY ? 1 : 2;
@@ -184,6 +187,11 @@ TEST_F(VulkanFramesTest, WarmUpsChangeNothing) {
     warmUp();
     ASSERT_EQ(limpid_denoiser_reset(denoiser), LIMPID_OK);
     EXPECT_EQ(denoiseSequence(denoiser, scene, 3), denoiseSequence(create(), scene, 3));
+    limpid_denoiser_desc nano = {};
+    nano.method = LIMPID_METHOD_NANO;
+    denoiser = create(nano);
+    warmUp();
+    EXPECT_EQ(denoiseSequence(denoiser, scene, 2), denoiseSequence(create(nano), scene, 2));
 }
 
 TEST_F(VulkanFramesTest, PipelineCachesAreNotCutOff) {
@@ -246,6 +254,13 @@ TEST_F(VulkanFramesTest, RefusesSizesThatTheDeviceDoesNotHave) {
     const uint64_t range = device().impl().context->limits().maxStorageBufferRange;
     if (gpu::filterBacking(device()) == gpu::Backing::Buffer && range < uint64_t{8} * 32768 * 32768) {
         EXPECT_EQ(limpid_denoiser_create(adopted_, &desc, &large), LIMPID_ERROR_UNSUPPORTED);
+    }
+    // The network's channels are in buffers on all devices.
+    desc.width = desc.height = device().impl().context->limits().maxImageDimension2D;
+    desc.method = LIMPID_METHOD_NANO;
+    if (range < uint64_t{32} * desc.width * desc.height) {
+        EXPECT_EQ(limpid_denoiser_create(adopted_, &desc, &large), LIMPID_ERROR_UNSUPPORTED);
+        EXPECT_THAT(limpid_last_error(), HasSubstr("bytes in a buffer"));
     }
 }
 

@@ -95,6 +95,8 @@ TEST_F(ViewToolsTest, ComparesWithAReference) {
 
     viewer.choose("compare with", "atrous");
     viewer.waitFor("another", [&] { return viewer.fact("compared") == "atrous"; });
+    viewer.choose("compare with", "nano");
+    viewer.waitFor("the network", [&] { return viewer.fact("compared") == "nano"; });
     viewer.choose("compare with", "nothing");
     EXPECT_FALSE(viewer.controls().contains("scores"));
     EXPECT_EQ(viewer.settledPicture(), one);

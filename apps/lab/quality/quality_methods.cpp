@@ -57,12 +57,26 @@ bool isAbout(const std::string& word, const std::string& group) {
     return std::ranges::find(denoisers, group) != denoisers.end();
 }
 
+/// True if a word of a variant is a parameter that this denoiser reads, as nano does those of svgf. All read
+/// those of anti-aliasing.
+bool isReadBy(const std::string& word, const std::string& name) {
+    const denoise::Denoiser* const denoiser = denoise::findDenoiser(name);
+    const std::string_view group = std::string_view(word).substr(0, word.find('.'));
+    return denoiser && group != "taa" && std::ranges::find(denoiser->groups, group) != denoiser->groups.end();
+}
+
+/// The last one that a word refers to, else the last one that reads a word, else the last one.
 const std::string& denoiserOf(const std::vector<std::string>& words,
                               const std::vector<std::string>& denoisers) {
-    const auto found = std::find_if(denoisers.rbegin(), denoisers.rend(), [&](const std::string& denoiser) {
-        return std::ranges::any_of(words, [&](const std::string& word) { return isAbout(word, denoiser); });
-    });
-    return found == denoisers.rend() ? denoisers.back() : *found;
+    for (const auto refers : {isAbout, isReadBy}) {
+        const auto found =
+            std::find_if(denoisers.rbegin(), denoisers.rend(), [&](const std::string& denoiser) {
+                return std::ranges::any_of(words,
+                                           [&](const std::string& word) { return refers(word, denoiser); });
+            });
+        if (found != denoisers.rend()) return *found;
+    }
+    return denoisers.back();
 }
 
 RenderSettings withDenoiser(RenderSettings settings, const std::string& name, const MethodChoice& choice) {

@@ -56,8 +56,10 @@ TEST(Protocol, SaysWhichDenoisersHaveAPart) {
             if (field.at("key") == key) return field.value("denoisers", std::vector<std::string>());
         return {"there is no such field"};
     };
-    EXPECT_THAT(denoisersOf("part.temporal"), testing::UnorderedElementsAre("temporal", "svgf", "atrous"));
-    EXPECT_THAT(denoisersOf("part.spatial"), testing::UnorderedElementsAre("svgf", "atrous", "bilateral"));
+    EXPECT_THAT(denoisersOf("part.temporal"),
+                testing::UnorderedElementsAre("temporal", "svgf", "nano", "atrous"));
+    EXPECT_THAT(denoisersOf("part.spatial"),
+                testing::UnorderedElementsAre("svgf", "nano", "atrous", "bilateral"));
     EXPECT_THAT(denoisersOf("seed"), testing::IsEmpty());
 }
 

@@ -19,15 +19,15 @@ constexpr float perspective[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -
 /// Throws Unsupported if images of this size are too large for the device, or the buffers that hold some of
 /// them.
 void checkSize(const gpu::Device& device, const limpid_denoiser_desc& desc) {
-    constexpr uint64_t widest = 8;  // bytes a pixel of surfaces, and of light in halves
-    const auto fail = [&](uint64_t most, const char* unit) {
-        throw gpu::Unsupported(formatText("images of {} x {} pixels: {} has at most {} {}", desc.width,
-                                          desc.height, device.info().name, most, unit));
+    const auto check = [&](uint64_t needed, uint64_t most, const char* unit) {
+        if (needed <= most) return;
+        throw gpu::Unsupported(formatText("images of {} x {} pixels need {} {}; {} has at most {}",
+                                          desc.width, desc.height, needed, unit, device.info().name, most));
     };
-    if (std::max(desc.width, desc.height) > device.maxImageSide()) fail(device.maxImageSide(), "a side");
-    const uint64_t most = device.maxStorageBufferBytes() / widest;
-    if (gpu::filterBacking(device) == gpu::Backing::Buffer && uint64_t{desc.width} * desc.height > most)
-        fail(most, "in a buffer");
+    check(std::max(desc.width, desc.height), device.maxImageSide(), "pixels in a side");
+    gpu::FrameGraph dry;
+    recordDryFrame(dry, desc, {}, gpu::filterBacking(device), {}, false);
+    check(dry.largestBufferBytes(), device.maxStorageBufferBytes(), "bytes in a buffer");
 }
 
 }  // namespace

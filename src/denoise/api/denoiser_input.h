@@ -45,6 +45,7 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     /// is anti-aliased afterwards.
     gpu::ImageHandle target;
     ReasonsRequest reasons;
+    bool wantsSignals = false;  ///< DenoiserOutput::diffuse and specular, too
 };
 
 /// Uploads the frame's images; optional layers that are empty become zeros, but roughness, hit distance, and

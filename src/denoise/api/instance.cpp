@@ -20,7 +20,7 @@ static_assert(methodNames[LIMPID_METHOD_SVGF] == "svgf" && methodNames[LIMPID_ME
               methodNames[LIMPID_METHOD_TEMPORAL] == "temporal" &&
               methodNames[LIMPID_METHOD_BILATERAL] == "bilateral" &&
               methodNames[LIMPID_METHOD_VISIBILITY] == "visibility" &&
-              methodNames.size() == LIMPID_METHOD_VISIBILITY + 1);
+              methodNames[LIMPID_METHOD_NANO] == "nano" && methodNames.size() == LIMPID_METHOD_NANO + 1);
 
 /// Calls `visit(table, settings)` for each group that the method reads.
 template <typename Settings, typename Visit>
@@ -179,10 +179,9 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
                                   .filters = filters});
     input.jitter = params.motion.jitter;
     if (!antialiases && !used.temporal.showDisocclusion) input.target = target;
-    if (desc.method != LIMPID_METHOD_SVGF || !signalsToo)
-        return {method.record(graph, input, used).beauty, {}, {}};
-    const SvgfImages filtered = filterSvgfSignals(graph, input, used.svgf);
-    return {antialias(graph, input, filtered.beauty, used.taa), filtered.diffuse, filtered.specular};
+    input.wantsSignals = signalsToo;
+    const DenoiserOutput made = method.record(graph, input, used);
+    return {made.beauty, made.diffuse, made.specular};
 }
 
 const char* inputName(size_t input) {

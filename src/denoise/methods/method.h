@@ -32,6 +32,10 @@ struct DenoiserOutput {
     gpu::ImageHandle frames;
     /// With DenoiserInput::reasons.wanted, for each signal; empty without temporal accumulation.
     std::vector<SignalReasons> reasons = {};
+    /// With DenoiserInput::wantsSignals, of SVGF and of methods that go on from it: the filtered signals,
+    /// rgba32f, with albedo, without emission, alpha 1. If there is one signal, `diffuse` is all light that
+    /// was filtered, and `specular` is empty.
+    gpu::ImageHandle diffuse = {}, specular = {};
 };
 
 }  // namespace limpid::denoise

@@ -20,9 +20,11 @@ using testing::UnorderedElementsAreArray;
 constexpr gpu::Extent extent{64, 32};
 constexpr gpu::ForeignImage nowhere{.image = 1, .view = 1};
 
-/// The names of the passes of an SVGF frame of foreign images, in their order.
+using Record = DenoiserOutput (*)(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
+
+/// The names of the passes of a frame of foreign images, in their order.
 std::vector<std::string> passesOf(gpu::FrameGraph& graph, const FilterSettings& settings,
-                                  bool reasons = false) {
+                                  bool reasons = false, Record record = svgf::record) {
     graph.beginFrame();
     const auto import = [&](const char* name) {
         return graph.import(name, gpu::Format::RGBA32Float, extent, nowhere);
@@ -38,7 +40,7 @@ std::vector<std::string> passesOf(gpu::FrameGraph& graph, const FilterSettings& 
     params.height = extent.height;
     DenoiserInput input = ingest(graph, images, params, {.twoSignals = settings.svgf.separate});
     input.reasons.wanted = reasons;
-    svgf::record(graph, input, settings);
+    record(graph, input, settings);
     std::vector<std::string> names;
     for (const gpu::RecordedPass& pass : graph.passes()) names.push_back(pass.name);
     return names;
@@ -69,6 +71,42 @@ TEST(RecordingTest, ReasonsAreTwoMorePasses) {
     EXPECT_THAT(passesOf(graph, {}, true), UnorderedElementsAreArray(names));
     constexpr uint64_t bytesOfAPixel = 8 + 4;
     EXPECT_EQ(graph.imageBytes(), bytes + 2 * bytesOfAPixel * extent.width * extent.height);
+}
+
+TEST(RecordingTest, NanoIsSvgfWithMorePassesBeforeTheLast) {
+    gpu::FrameGraph graph;
+    const std::vector<std::string> names = passesOf(graph, {}, false, nano::record);
+    std::vector<std::string> others;
+    std::ranges::copy_if(names, std::back_inserter(others),
+                         [](const std::string& name) { return !name.starts_with("nano/"); });
+    EXPECT_GT(names.size(), others.size() + 10);
+    EXPECT_EQ(others, passesOf(graph, {}));
+    EXPECT_EQ(names.back(), "svgf/compose");
+}
+
+TEST(RecordingTest, SignalsAreWrittenWhereTheyAreWanted) {
+    for (const Record record : {Record{svgf::record}, Record{nano::record}}) {
+        for (const bool separate : {true, false}) {
+            for (const bool wanted : {true, false}) {
+                gpu::FrameGraph graph;
+                graph.beginFrame();
+                const gpu::ImageHandle image =
+                    graph.import("image", gpu::Format::RGBA32Float, extent, nowhere);
+                IngestImages images{.radiance = image, .specular = image, .normal = image, .depth = image};
+                IngestParams params{};
+                params.width = extent.width;
+                params.height = extent.height;
+                FilterSettings settings;
+                settings.svgf.separate = separate;
+                DenoiserInput input = ingest(graph, images, params, {.twoSignals = separate});
+                input.wantsSignals = wanted;
+                const DenoiserOutput output = record(graph, input, settings);
+                EXPECT_TRUE(output.beauty);
+                EXPECT_EQ(static_cast<bool>(output.diffuse), wanted);
+                EXPECT_EQ(static_cast<bool>(output.specular), wanted && separate);
+            }
+        }
+    }
 }
 
 TEST(RecordingTest, HistoriesLiveFromFrameToFrame) {

@@ -321,6 +321,13 @@ void FrameGraph::host(HostPass pass) {
     impl_->frame.dispatches.push_back(std::move(dispatch));
 }
 
+uint64_t FrameGraph::largestBufferBytes() const {
+    uint64_t bytes = 0;
+    for (const RecordedImage& image : impl_->frame.images)
+        if (image.key.backing == Backing::Buffer) bytes = std::max(bytes, image.bytes());
+    return bytes;
+}
+
 uint64_t FrameGraph::imageBytes() const {
     const std::vector<uint32_t> memory = impl_->planMemory();
     uint64_t bytes = 0;

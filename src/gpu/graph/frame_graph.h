@@ -274,6 +274,8 @@ class FrameGraph {
     /// Returns the device memory of the images that this frame needs. Histories count as pairs, images that
     /// share memory as one; imported images do not count.
     uint64_t imageBytes() const;
+    /// Returns the bytes of the largest of these images with Backing::Buffer; 0 if there is none.
+    uint64_t largestBufferBytes() const;
     /// Behaves as if execute() had run: lets tests follow histories over frames without a device.
     void assumeExecuted();
     /// Returns the pixels of an image of the last executed frame, all components, row 0 first. Waits for the

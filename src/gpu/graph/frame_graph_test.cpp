@@ -429,6 +429,7 @@ TEST_F(MemorySharingTest, ResultsKeepTheirMemory) {
     const ImageHandle b = filled("b");
     filled("c");
     EXPECT_EQ(graph.imageBytes(), 3 * imageSize);
+    EXPECT_EQ(graph.largestBufferBytes(), 0u);
     read("reader of a", a);
     read("reader of b", b);
     EXPECT_EQ(graph.imageBytes(), 4 * imageSize) << "the second reader's result takes the memory of a";
@@ -454,6 +455,7 @@ TEST_F(MemorySharingTest, BuffersNeedNotHaveOneFormat) {
     const ImageHandle pairs = graph.transient("pairs", Format::RG32Float, small, Backing::Buffer);
     graph.host({.pass = "write pairs", .reads = {}, .writes = {pairs}, .run = {}});
     EXPECT_EQ(graph.imageBytes(), imageSize + imageSize / 2);
+    EXPECT_EQ(graph.largestBufferBytes(), imageSize);
 }
 
 TEST_F(MemorySharingTest, AHistorysPreviousImageGivesItsMemoryAndTheCurrentOneDoesNot) {

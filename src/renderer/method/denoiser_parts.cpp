@@ -15,12 +15,12 @@ struct Switches {
 };
 
 std::span<const std::string_view> switchesOf(const denoise::Denoiser* denoiser, size_t part) {
+    static const std::vector<std::string_view> singleFrames{"svgf.alpha=1", "svgf.alpha_moments=1",
+                                                            "svgf.antilag=0", "svgf.stabilisation_alpha=1",
+                                                            "taa.frames=1"};
     static const std::vector<Switches> all{
-        {"svgf",
-         {{{"svgf.alpha=1", "svgf.alpha_moments=1", "svgf.antilag=0", "svgf.stabilisation_alpha=1",
-            "taa.frames=1"},
-           {"svgf.levels=0"},
-           {"svgf.demodulate=off"}}}},
+        {"svgf", {{singleFrames, {"svgf.levels=0"}, {"svgf.demodulate=off"}}}},
+        {"nano", {{singleFrames, {"svgf.levels=0", "nano.strength=0"}, {"svgf.demodulate=off"}}}},
         {"atrous",
          {{{"atrous.temporal=off", "taa.frames=1"},
            {"atrous.levels=0"},

@@ -85,7 +85,7 @@ void chooseMethod(const ShotRequest& r, ShotJob& job) {
                                          [](const std::string& text) { return text.starts_with("taa."); });
     job.weights = r.weights;
     job.bidirectional = r.bidirectional && job.input.numbered();
-    if (job.bidirectional && (job.options.method->network || job.options.method->name == "bilateral"))
+    if (job.bidirectional && !job.options.method->keepsHistory)
         throw UsageError(
             fmt::format("--bidirectional: --denoiser {} has no history", job.options.method->name));
 }

@@ -196,7 +196,8 @@ def test_parts(browser):
       return row.offsetParent !== null;
     }).join()"""
     for denoiser, parts in (('temporal', 'temporal,demodulation'), ('bilateral', 'spatial,demodulation'),
-                            ('atrous', 'temporal,spatial,demodulation'), ('none', '')):
+                            ('atrous', 'temporal,spatial,demodulation'), ('nano', 'temporal,spatial,demodulation'),
+                            ('none', '')):
         choose(browser, 'denoiser', denoiser)
         browser.wait(f"{shown} === '{parts}'", f'the parts of {denoiser}')
     settle(browser, 'the path tracer')

@@ -67,42 +67,56 @@ class Svgf {
 
     /// Records each pass for all signals before the next pass. Passes of one kind do not wait for each other,
     /// so the device fills up with the second while the first one ends.
-    SvgfImages record(bool signalsToo) {
+    SvgfStages record() {
         const History surfaces = recordSurfaces(graph_, input_);
         const std::vector<Signal> all = signals();
         std::vector<Accumulated> accumulated;
-        std::vector<ImageHandle> filtered;
         for (const Signal& signal : all) accumulated.push_back(reproject(signal, surfaces));
-        if (settings_.antilag > 0.0f) {
-            const SvgfLagParams lag = lagParams();
-            for (size_t i = 0; i < all.size() && !buffers_; ++i)
-                recordTileSums(graph_, "svgf/tiles " + all[i].name, accumulated[i].moments,
-                               accumulated[i].tileSums, lag);
-            for (size_t i = 0; i < all.size(); ++i)
-                recordTileLags(graph_, "svgf/lags " + all[i].name, accumulated[i].tileSums,
-                               accumulated[i].tiles, lag, settings_.antilagAround);
-            for (size_t i = 0; i < all.size(); ++i) shortenHistory(all[i], accumulated[i]);
-        }
+        if (settings_.antilag > 0.0f) followChanges(all, accumulated);
+        std::vector<ImageHandle> filtered;
         for (size_t i = 0; i < all.size(); ++i) {
             estimateVariance(all[i], surfaces, accumulated[i]);
             filtered.push_back(accumulated[i].color);
         }
+        std::vector<ImageHandle> first = filtered;
         for (int number = 1; number <= settings_.levels; ++number) {
             filtered = level(all, surfaces, accumulated, filtered, number);
-            for (size_t i = 0; i < all.size() && number == 1 && fillsYoung(); ++i)
+            if (number > 1) continue;
+            first = filtered;
+            for (size_t i = 0; i < all.size() && fillsYoung(); ++i)
                 fillYoung(all[i], surfaces, accumulated[i], filtered[i]);
         }
-        SvgfImages images{.beauty = beautyOf(filtered), .moments = accumulated.front().moments};
-        for (size_t i = 0; i < all.size() && input_.reasons.wanted; ++i)
-            images.reasons.push_back(reasons(all[i], surfaces, accumulated[i]));
-        if (!signalsToo) return images;
-        if (settings_.separate) {
-            images.diffuse = radianceOf("diffuse", filtered.front(), input_.albedo);
-            images.specular = radianceOf("specular", filtered.back(), input_.albedoSpecular);
-        } else {
-            images.diffuse = radianceOf("diffuse", filtered.front(), input_.albedo, input_.albedoSpecular);
+        SvgfStages stages{
+            .surfaces = surfaces.current, .signals = {}, .stabilised = stabilises(), .reasons = {}};
+        for (size_t i = 0; i < all.size(); ++i) {
+            const Accumulated& a = accumulated[i];
+            stages.signals.push_back(
+                {a.color, a.moments, first[i], a.stablePast, a.stable.current, filtered[i]});
+            if (input_.reasons.wanted) stages.reasons.push_back(reasons(all[i], surfaces, a));
         }
-        return images;
+        return stages;
+    }
+
+    /// The picture.
+    ImageHandle beautyOf(const SvgfLight& light) {
+        return compose(graph_, "svgf/compose",
+                       {.light = light[0],
+                        .albedo = input_.albedo,
+                        .second = settings_.separate ? light[1] : ImageHandle{},
+                        .secondAlbedo = input_.albedoSpecular,
+                        .emission = input_.emission,
+                        .target = input_.target,
+                        .minAlbedo = minAlbedo()});
+    }
+
+    /// Adds the signals to the output.
+    void addSignals(const SvgfLight& light, DenoiserOutput& output) {
+        if (settings_.separate) {
+            output.diffuse = radianceOf("diffuse", light[0], input_.albedo);
+            output.specular = radianceOf("specular", light[1], input_.albedoSpecular);
+        } else {
+            output.diffuse = radianceOf("diffuse", light[0], input_.albedo, input_.albedoSpecular);
+        }
     }
 
   private:
@@ -241,6 +255,18 @@ class Svgf {
              .shortens = settings_.antilag > 0.0f,
              .reflectionMotion = signal.reflects ? input_.reflectionMotion : ImageHandle{},
              .lobeScale = hasRoughness(signal) && settings_.lobeTest > 0.0f ? params.lobeScale : 0.0f});
+    }
+
+    /// Shortens histories where light has changed.
+    void followChanges(const std::vector<Signal>& all, const std::vector<Accumulated>& accumulated) {
+        const SvgfLagParams lag = lagParams();
+        for (size_t i = 0; i < all.size() && !buffers_; ++i)
+            recordTileSums(graph_, "svgf/tiles " + all[i].name, accumulated[i].moments,
+                           accumulated[i].tileSums, lag);
+        for (size_t i = 0; i < all.size(); ++i)
+            recordTileLags(graph_, "svgf/lags " + all[i].name, accumulated[i].tileSums, accumulated[i].tiles,
+                           lag, settings_.antilagAround);
+        for (size_t i = 0; i < all.size(); ++i) shortenHistory(all[i], accumulated[i]);
     }
 
     void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
@@ -390,17 +416,6 @@ class Svgf {
                          .extent = extent_});
     }
 
-    ImageHandle beautyOf(const std::vector<ImageHandle>& filtered) {
-        return compose(graph_, "svgf/compose",
-                       {.light = filtered.front(),
-                        .albedo = input_.albedo,
-                        .second = settings_.separate ? filtered.back() : ImageHandle{},
-                        .secondAlbedo = input_.albedoSpecular,
-                        .emission = input_.emission,
-                        .target = input_.target,
-                        .minAlbedo = minAlbedo()});
-    }
-
     /// The radiance of one signal, without emission. `otherAlbedo`: empty, or its light was reflected by
     /// both.
     ImageHandle radianceOf(const std::string& name, ImageHandle light, ImageHandle albedo,
@@ -420,20 +435,27 @@ class Svgf {
 
 }  // namespace
 
-ImageHandle filterSvgf(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings) {
-    return Svgf(graph, input, settings).record(false).beauty;
+SvgfStages recordSvgfStages(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings) {
+    return Svgf(graph, input, settings).record();
 }
 
-SvgfImages filterSvgfSignals(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings) {
-    return Svgf(graph, input, settings).record(true);
-}
-
-DenoiserOutput svgf::record(gpu::FrameGraph& graph, const DenoiserInput& input,
-                            const FilterSettings& settings) {
+DenoiserOutput composeSvgf(FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings,
+                           const SvgfStages& stages, const SvgfLight& light) {
     DenoiserInput own = input;
     own.target = targetBeforeTaa(graph, input, settings.taa);
-    const SvgfImages images = Svgf(graph, own, settings.svgf).record(false);
-    return {antialias(graph, input, images.beauty, settings.taa), {}, images.moments, images.reasons};
+    Svgf svgf(graph, own, settings.svgf);
+    DenoiserOutput output{.beauty = antialias(graph, input, svgf.beautyOf(light), settings.taa),
+                          .disocclusion = {},
+                          .frames = stages.signals.front().moments,
+                          .reasons = stages.reasons};
+    if (input.wantsSignals) svgf.addSignals(light, output);
+    return output;
+}
+
+DenoiserOutput svgf::record(FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings) {
+    const SvgfStages stages = recordSvgfStages(graph, input, settings.svgf);
+    return composeSvgf(graph, input, settings, stages,
+                       {stages.signals.front().filtered, stages.signals.back().filtered});
 }
 
 }  // namespace limpid::denoise

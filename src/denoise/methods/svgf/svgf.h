@@ -44,27 +44,40 @@ struct SvgfSettings {
     bool operator==(const SvgfSettings&) const = default;
 };
 
-/// Records one frame and returns the clean beauty, rgba32f, alpha 1. A pass with SIGNAL in its name runs once
-/// for "joint", or for "diffuse" and "specular". Passes: "surfaces", "svgf/reproject SIGNAL",
-/// "svgf/tiles SIGNAL" (with filters in images; otherwise "svgf/reproject" does its work), "svgf/lags SIGNAL"
-/// and "svgf/antilag SIGNAL" (none of them without anti-lag), "svgf/variance SIGNAL", "svgf/level 1",
-/// "svgf/young SIGNAL" (unless it is off), "svgf/level 2" and so on, "svgf/compose", and for debugging
-/// "svgf/reasons SIGNAL". Histories: the surfaces, and for each signal "svgf/SIGNAL color",
-/// "svgf/SIGNAL moments" and "svgf/SIGNAL stable".
-gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
-
-/// The same, and each filtered signal: rgba32f, with albedo, without emission, alpha 1.
-struct SvgfImages {
-    gpu::ImageHandle beauty;
-    gpu::ImageHandle diffuse;                 ///< without `separate`: all light that was filtered
-    gpu::ImageHandle specular;                ///< empty without `separate`
-    gpu::ImageHandle moments;                 ///< of diffuse light, or of all: svgf_moments.glsl
-    std::vector<SignalReasons> reasons = {};  ///< DenoiserOutput::reasons
+/// What the steps made of one signal, for a method that goes on from there. RGBA16Float, light without
+/// albedo.
+struct SvgfSignalStages {
+    gpu::ImageHandle accumulated;  ///< and the deviation of its luminance
+    gpu::ImageHandle moments;      ///< svgf_moments.glsl; the fourth component counts frames
+    gpu::ImageHandle first;        ///< after the first level of the filter
+    gpu::ImageHandle past;         ///< R32Uint, svgf_stable.glsl: the stabilised light of before, where it is
+                                   ///< now; one pixel without stabilisation
+    gpu::ImageHandle stable;       ///< likewise, for the next frame: a method may replace it by its own light
+    gpu::ImageHandle filtered;     ///< after the last level
 };
-SvgfImages filterSvgfSignals(gpu::FrameGraph& graph, const DenoiserInput& input,
-                             const SvgfSettings& settings);
+struct SvgfStages {
+    gpu::ImageHandle surfaces;              ///< surface_texel.glsl
+    std::vector<SvgfSignalStages> signals;  ///< diffuse and specular, or with `separate` off their sum
+    bool stabilised = false;                ///< `past` and `stable` have been written
+    std::vector<SignalReasons> reasons;     ///< DenoiserOutput::reasons
+};
+/// All passes of svgf::record() but the last ones.
+SvgfStages recordSvgfStages(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
-/// The entry in the list of methods (methods.h).
+/// Light of the signals, as SvgfStages::signals have it; the second is not read without `separate`.
+using SvgfLight = std::array<gpu::ImageHandle, 2>;
+
+/// The last passes, with `light` in the place of SvgfSignalStages::filtered.
+DenoiserOutput composeSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings,
+                           const SvgfStages& stages, const SvgfLight& light);
+
+/// The entry in the list of methods (methods.h). A pass with SIGNAL in its name runs once for "joint", or for
+/// "diffuse" and "specular". Passes: "surfaces", "svgf/reproject SIGNAL", "svgf/tiles SIGNAL" (with filters
+/// in images; otherwise "svgf/reproject" does its work), "svgf/lags SIGNAL" and "svgf/antilag SIGNAL" (none
+/// of them without anti-lag), "svgf/variance SIGNAL", "svgf/level 1", "svgf/young SIGNAL" (unless it is off),
+/// "svgf/level 2" and so on, for debugging "svgf/reasons SIGNAL", "svgf/compose", where signals are wanted
+/// "svgf/compose diffuse" and "svgf/compose specular", and "taa". Histories: the surfaces, and for each
+/// signal "svgf/SIGNAL color", "svgf/SIGNAL moments" and "svgf/SIGNAL stable".
 namespace svgf {
 using Settings = SvgfSettings;
 inline constexpr std::string_view help =

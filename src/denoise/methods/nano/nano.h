@@ -1,0 +1,30 @@
+// A network behind SVGF: it sees what SVGF has accumulated and filtered, predicts the weights of a filter on
+// five resolutions, and how much of SVGF's result to replace by that. docs/nano.md has the architecture and
+// how it was trained.
+#pragma once
+
+#include "denoise/methods/method.h"
+
+namespace limpid::denoise {
+
+/// User settings; nano::params() gives ranges and descriptions.
+struct NanoSettings {
+    float strength = 1.0f;
+    bool operator==(const NanoSettings&) const = default;
+};
+
+/// The entry in the list of methods (methods.h). Passes: those of SVGF, with "nano/features" and so on before
+/// "svgf/compose".
+namespace nano {
+using Settings = NanoSettings;
+inline constexpr std::string_view help =
+    "a trained network behind SVGF: predicts the weights of a filter on five resolutions";
+inline constexpr std::array<std::string_view, 3> groups{"nano", "svgf", "taa"};
+const ParamTable<Settings>& params();
+inline constexpr bool readsLayers = false;
+inline constexpr bool oneChannel = false;
+inline constexpr bool keepsHistory = true;
+DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
+}  // namespace nano
+
+}  // namespace limpid::denoise

@@ -1,0 +1,55 @@
+// Parameters and sizes of the passes of `nano`. Included by C++ and GLSL.
+#ifndef LIMPID_DENOISE_NANO_PARAMS_H
+#define LIMPID_DENOISE_NANO_PARAMS_H
+
+#include "shaders/common/camera.h"
+
+#ifdef __cplusplus
+namespace limpid::denoise {
+#define LIMPID_CONST inline constexpr
+#else
+#define LIMPID_CONST const
+#endif
+
+LIMPID_CONST int NANO_LEVELS = 5;     // resolutions; each halves the one before
+LIMPID_CONST int NANO_FEATURES = 24;  // that the network sees of a pixel
+LIMPID_CONST int NANO_GROUP = 8;      // channels in a texel of a buffer, as halves
+LIMPID_CONST int NANO_PIXELS = 4;     // in a row, that one invocation of a convolution computes
+// Taps of a convolution.
+LIMPID_CONST uint NANO_POINT = 0u;   // 1x1: of the same pixel, then of the pixel of the next coarser level
+LIMPID_CONST uint NANO_HALVE = 1u;   // 2x2: of the four pixels of the next finer level
+LIMPID_CONST uint NANO_AROUND = 2u;  // 3x3: of the pixels around; 0 beyond the edges
+
+struct NanoFeaturesParams {
+    CameraParams camera;
+    uint width;  // of the picture
+    uint height;
+    uint paddedWidth;  // a multiple of 2^(NANO_LEVELS - 1)
+    uint paddedHeight;
+};
+
+struct NanoConvolveParams {
+    uint width;  // of the outputs
+    uint height;
+    uint groups;        // of inputs
+    uint secondGroups;  // of inputs of the next coarser level
+    uint outputGroups;
+    uint weights;  // index of the layer's first texel
+};
+
+struct NanoFilterParams {
+    uint width;  // of the level, without its padding only at the finest level
+    uint height;
+    uint paddedWidth;
+    uint paddedHeight;
+    uint groups;       // of inputs
+    uint logitGroups;  // of each signal
+    uint weights;      // index of the layer's first texel
+    float strength;
+};
+
+#undef LIMPID_CONST
+#ifdef __cplusplus
+}  // namespace limpid::denoise
+#endif
+#endif

@@ -1,0 +1,111 @@
+// Filters one level: a mean of the pixels around, and of the four nearest pixels of the filtered coarser level, with
+// the network's weights. With LIMPID_NANO_FINEST the finest level, which is then mixed with SVGF's result.
+#include "denoise/methods/nano/shaders/nano_storage.glsl"
+
+#ifdef LIMPID_NANO_FINEST
+#include "denoise/methods/svgf/shaders/svgf_stable.glsl"
+const int REACH = 2, GROUPS = 4;
+#else
+const int REACH = 1, GROUPS = 2;
+#endif
+const int EDGE = 2 * REACH + 1, OWN = EDGE * EDGE;
+layout(constant_id = 0) const bool COARSER = true;  // there is a coarser level
+#ifdef LIMPID_NANO_FINEST
+layout(constant_id = 1) const bool STABILISE = true;  // the next frame is stabilised by the result
+layout(constant_id = 2) const bool TWO_SIGNALS = true;
+#endif
+
+layout(set = 0, binding = 0, scalar) uniform Params {
+    NanoFilterParams params;
+};
+READ_TEXELS(1, inputs);
+READ_TEXELS(2, weights);
+READ_TEXELS(3, light);
+READ_TEXELS(4, coarser);
+#ifdef LIMPID_NANO_FINEST
+READ_HALF4(5, filteredA);
+READ_HALF4(6, filteredB);
+WRITE_HALF4(7, resultA);
+WRITE_HALF4(8, resultB);
+WRITE_UINT1(9, stableA);  // svgf_stable.glsl
+WRITE_UINT1(10, stableB);
+#else
+WRITE_TEXELS(5, result);
+#endif
+
+#include "denoise/methods/nano/shaders/nano_logits.glsl"
+
+/// Of one signal.
+struct Logits {
+    Eight values[GROUPS];
+};
+
+Logits logitsOfSignal(uint pixel, uint signal) {
+    Logits logits;
+    [[unroll]] for (int group = 0; group < GROUPS; ++group)
+        logits.values[group] = logitsOf(pixel, signal * params.logitGroups + uint(group));
+    return logits;
+}
+
+float logit(Logits logits, int number) {
+    return logitOf(logits.values[number / 8], number);
+}
+
+float largest(Logits logits, int count) {
+    float most = logit(logits, 0);
+    [[unroll]] for (int i = 1; i < count; ++i) most = max(most, logit(logits, i));
+    return most;
+}
+
+/// The pixel of the coarser level that is the `number`th of the four nearest ones.
+ivec2 coarseTap(ivec2 at, int number) {
+    const ivec2 from = ivec2(number % 2, number / 2) - 1 + (at & 1);
+    return clamp(at / 2 + from, ivec2(0), ivec2(params.paddedWidth, params.paddedHeight) / 2 - 1);
+}
+
+LightPair filtered(ivec2 at, Logits a, Logits b) {
+    const int count = OWN + (COARSER ? 4 : 0);
+    const vec2 most = vec2(largest(a, count), largest(b, count));
+    LightSums sums = LightSums(vec4(0.0), vec4(0.0));
+    const ivec2 last = ivec2(params.paddedWidth, params.paddedHeight) - 1;
+    [[unroll]] for (int i = 0; i < OWN + 4; ++i) {
+        if (i >= count) continue;
+        uvec4 texel;
+        if (i < OWN) {
+            const ivec2 tap = clamp(at + ivec2(i % EDGE, i / EDGE) - REACH, ivec2(0), last);
+            texel = light.texels[uint(tap.y) * params.paddedWidth + uint(tap.x)];
+        } else {
+            const ivec2 tap = coarseTap(at, i - OWN);
+            texel = coarser.texels[uint(tap.y) * (params.paddedWidth / 2u) + uint(tap.x)];
+        }
+        // Not 0, even if the only taps that see a surface have small weights.
+        add(sums, lightPairOf(texel), exp(max(vec2(logit(a, i), logit(b, i)) - most, -60.0)));
+    }
+    return meanOf(sums);
+}
+
+#ifdef LIMPID_NANO_FINEST
+/// `svgf`: its light, and in the fourth component its deviation; negative: nothing is seen.
+vec4 mixed(vec4 svgf, vec3 own, Logits logits) {
+    const float share = params.strength / (1.0 + exp(logit(logits, OWN + 5) - logit(logits, OWN + 4)));
+    return svgf.a < 0.0 ? svgf : vec4(mix(svgf.rgb, own, share), svgf.a);
+}
+#endif
+
+void main() {
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= int(params.width) || at.y >= int(params.height)) return;
+    const uint pixel = uint(at.y) * params.paddedWidth + uint(at.x);
+    const Logits a = logitsOfSignal(pixel, 0u), b = logitsOfSignal(pixel, 1u);
+    const LightPair own = filtered(at, a, b);
+#ifdef LIMPID_NANO_FINEST
+    const vec4 diffuse = mixed(LOAD_HALF4(filteredA, at), own.diffuse, a);
+    const vec4 specular = mixed(LOAD_HALF4(filteredB, at), own.specular, b);
+    STORE_HALF4(resultA, at, diffuse);
+    STORE_HALF4(resultB, at, specular);
+    if (STABILISE) STORE_UINT1(stableA, at, packedStable(diffuse.rgb));
+    if (STABILISE && TWO_SIGNALS) STORE_UINT1(stableB, at, packedStable(specular.rgb));
+#else
+    result.texels[pixel] = packLightPair(own);
+#endif
+}
