@@ -137,6 +137,23 @@ TEST_F(CliDatasetTest, AFurnaceIsAsBrightAsItMustBe) {
     EXPECT_LT(ratio, 13.0);
 }
 
+/// More in the shaders changes random numbers, but not what is seen, nor how bright it is.
+TEST_F(CliDatasetTest, SharedPipelinesSeeTheSame) {
+    const auto tensorsOf = [&](const std::string& name, const std::string& options) {
+        expect(
+            "dataset --device cpu --rooms 1 --seed 4 --width 24 --height 24 --samples 1 --sequence 1 "
+            "--reference-samples 256 " +
+                options + " -o '" + path(name) + "'",
+            0, "manifest");
+        return neural::readTensorFile(path(name + "/examples.00000.safetensors")).tensors;
+    };
+    const auto own = tensorsOf("own", ""), shared = tensorsOf("shared", "--share-pipelines");
+    for (const char* name : {"000000/1/albedo", "000000/1/normal", "000000/1/depth"})
+        EXPECT_EQ(valuesOf(own.at(name)), valuesOf(shared.at(name))) << name;
+    const double mean = meanOf(own.at("000000/1/reference"));
+    EXPECT_NEAR(meanOf(shared.at("000000/1/reference")), mean, 0.03 * mean);
+}
+
 /// Everything is white and gray, and lit alike: what SVGF accumulates, filters and composes is known.
 TEST_F(CliDatasetTest, AClipHasWhatAFilterOfAccumulatedLightSees) {
     expect(
@@ -145,7 +162,7 @@ TEST_F(CliDatasetTest, AClipHasWhatAFilterOfAccumulatedLightSees) {
             path("data") + "'",
         0, "manifest");
     const auto tensors = neural::readTensorFile(path("data/examples.00000.safetensors")).tensors;
-    EXPECT_EQ(tensors.size(), 2u * (2u * 4u + 9u));
+    EXPECT_EQ(tensors.size(), 2u * (2u * 5u + 10u));
     const auto mean = [&](const std::string& name) { return meanOf(tensors.at("000000/3/" + name)); };
     EXPECT_EQ(tensors.at("000000/1/diffuse").shape, (std::vector<uint64_t>{4, 16, 24}));
     EXPECT_EQ(tensors.at("000000/1/camera").shape, (std::vector<uint64_t>{4, 3}));
@@ -153,13 +170,22 @@ TEST_F(CliDatasetTest, AClipHasWhatAFilterOfAccumulatedLightSees) {
     EXPECT_NEAR(std::hypot(camera[3], camera[4], camera[5]), 0.5 * std::tan(0.5),
                 1e-4);                            // upwards, half as far
     EXPECT_NEAR(mean("reference"), 1.996, 0.01);  // of which 1 is emission
+    EXPECT_NEAR(mean("reference2"), 1.996, 0.01);
+    EXPECT_NE(valuesOf(tensors.at("000000/3/reference")), valuesOf(tensors.at("000000/3/reference2")));
     EXPECT_NEAR(mean("albedo"), 0.5, 1e-3);
     // The fourth channel is 1.
     EXPECT_NEAR(mean("svgf"), (3.0 * 1.996 + 1.0) / 4.0, 0.02);
     EXPECT_GT(mean("diffuse.frames"), 2.0);
     EXPECT_EQ(mean("specular.past"), 0.0);
+    EXPECT_EQ(tensors.at("000000/1/diffuse.svgf").shape, (std::vector<uint64_t>{4, 16, 24}));
+    EXPECT_EQ(mean("specular.svgf"), 0.0);
     const auto manifest = nlohmann::json::parse(get("data/manifest.json"));
     EXPECT_EQ(manifest["dataset"]["sequence"], (std::vector<int>{1, 3}));
+    expect(
+        "dataset --device cpu --rooms 0 --scene builtin:furnace --width 24 --height 16 --samples 1 "
+        "--reference-samples 64 --sequence 1,3 --picture-height 32 --share-pipelines -o '" +
+            path("data") + "'",
+        2, "share_pipelines is absent, not true");
     expect("dataset --sequence 3,1 --samples 1 -o '" + path("x") + "'", 2, "ascending");
     expect("dataset --sequence 1,3 -o '" + path("x") + "'", 2, "one number of --samples");
     expect("dataset --picture-height 512 -o '" + path("x") + "'", 2, "--picture-height");

@@ -43,7 +43,8 @@ struct DatasetOptions {
     std::vector<std::string> scenes;
     uint32_t rooms = 100, stillLifes = 0, perFile = 8;
     std::vector<uint32_t> sequence;  ///< the frames of each clip that are stored; empty: stills
-    uint32_t pictureHeight = 0;      ///< clips show the middle of a picture of this height; 0: all of it
+    bool sharePipelines = false;
+    uint32_t pictureHeight = 0;  ///< clips show the middle of a picture of this height; 0: all of it
     ExampleSettings example;
 };
 
@@ -107,8 +108,7 @@ std::string differenceOf(const json& theirs, const json& ours) {
     return "its parameters are written otherwise";
 }
 
-/// Makes scenes more alike, so that they share pipelines: random scenes differ in what they need, and drivers
-/// take longer to compile a pipeline than to render a clip. Only what a shader can do without is added.
+/// Makes scenes more alike, so that they share pipelines. Only what a shader can do without is added.
 void generalise(scene::SceneFeatures& features) {
     if (!features.specular) return;
     features.textures = features.alpha = features.transmission = true;
@@ -148,6 +148,7 @@ class Dataset {
                     {"height", o_.example.extent.height},
                     {"samples", o_.example.samples},
                     {"reference_samples", o_.example.referenceSamples}};
+        if (o_.sharePipelines) result["share_pipelines"] = true;  // uses up other random numbers
         if (!o_.sequence.empty()) {
             result["sequence"] = o_.sequence;
             result["picture_height"] = o_.pictureHeight;
@@ -179,7 +180,7 @@ class Dataset {
             scene::Scene scene = scene::openScene({.scene = sceneOf(example)});
             if (!o_.sequence.empty() && !scene.rig.clips.empty()) scene::chooseClip(scene, "");
             scene::SceneData data = scene::buildSceneData(scene);
-            if (!o_.sequence.empty()) generalise(data.features);
+            if (o_.sharePipelines) generalise(data.features);
             scene::GpuScene gpuScene(device, data, {tracer, {}});
             list.push_back(o_.sequence.empty() ? addStill(device, gpuScene, scene, example, result)
                                                : addMoving(device, gpuScene, scene, data, example, result));
@@ -396,6 +397,10 @@ void addDatasetCommand(CLI::App& app) {
             "With --sequence: clips show the middle of a picture of this height, pixels (that of the "
             "clips)")
         ->check(CLI::Range(1, 16384));
+    command->add_flag(
+        "--share-pipelines", o->sharePipelines,
+        "Trace scenes of different materials by the same pipelines; for drivers that take longer "
+        "to compile one than to render an example");
     command->add_option("--shard", o->shard,
                         "I/N: write the I-th of N parts only; existing files are kept (1/1)");
     addDeviceOptions(*command, o->device);
