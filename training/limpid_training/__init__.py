@@ -1,1 +1,1 @@
-"""Trains the kernel-predicting networks of Limpid's denoiser `kpcn`. docs/kpcn.md explains how to use this package."""
+"""Trains the networks of Limpid's denoisers: `kpcn` (docs/kpcn.md explains how), and in `nano` that of `nano`."""

@@ -20,8 +20,11 @@ def end(message, code):
 
 
 def load(run, device="cpu"):
-    """Returns what the last finished epoch left. Ends the program if there is none, or if it is damaged."""
-    path = path_in(run)
+    """Returns what a run saved last. Ends the program if there is no checkpoint, or if it is damaged."""
+    return read(path_in(run), device)
+
+
+def read(path, device="cpu"):
     if not os.path.isfile(path):
         end(f"{path}: there is no checkpoint", UNREADABLE)
     try:
@@ -34,3 +37,12 @@ def refuse_to_replace(run):
     """Ends the program if the run has a checkpoint."""
     if os.path.exists(path_in(run)):
         end(f"{path_in(run)}: there is a checkpoint; --resume continues it, --overwrite replaces it", USAGE)
+
+
+def replace(path, write):
+    """Calls write(stream) for a new file, which replaces the one at `path` when it is complete."""
+    with open(path + ".new", "wb") as stream:
+        write(stream)
+        stream.flush()
+        os.fsync(stream.fileno())
+    os.replace(path + ".new", path)

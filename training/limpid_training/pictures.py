@@ -1,4 +1,4 @@
-"""Writes PNG files and SVG plots, without further libraries."""
+"""Writes PNG and PFM files and SVG plots, without further libraries."""
 
 import html
 import math
@@ -27,6 +27,14 @@ def write_png(path, image):
     with open(path, "wb") as stream:
         stream.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", columns, rows, 8, 2, 0, 0, 0)))
         stream.write(chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
+
+
+def write_pfm(path, image):
+    """Writes an image (3, rows, columns) with all its bits."""
+    texels = image.float().flip(1).permute(1, 2, 0).contiguous()  # the bottom row first
+    rows, columns = texels.shape[:2]
+    with open(path, "wb") as stream:
+        stream.write(b"PF\n%d %d\n-1.0\n" % (columns, rows) + texels.numpy().tobytes())
 
 
 COLORS = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b")

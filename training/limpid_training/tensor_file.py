@@ -19,11 +19,11 @@ def _bytes_of(tensor):
     return tensor.detach().cpu().contiguous().numpy().tobytes()
 
 
-def write(path, tensors, metadata=None):
-    """Writes `tensors`, a dict of float16 or float32 tensors. An existing file is replaced only when the new one is
-    complete."""
+def write(path, tensors, metadata=None, by_name=True):
+    """Writes `tensors`, a dict of float16 or float32 tensors, in the order of their names, or else of the dict. An
+    existing file is replaced only when the new one is complete."""
     header, place, checksum, blocks = {}, 0, 0, []
-    for name in sorted(tensors):
+    for name in sorted(tensors) if by_name else tensors:
         block = _bytes_of(tensors[name])
         header[name] = {
             "dtype": _NAMES[tensors[name].dtype],

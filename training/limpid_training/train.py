@@ -104,15 +104,6 @@ def split(count, held_out):
     return sorted(set(range(count)) - set(validated)), validated
 
 
-def replace(path, write):
-    """Calls write(stream) for a new file, which replaces the one at `path` when it is complete."""
-    with open(path + ".new", "wb") as stream:
-        write(stream)
-        stream.flush()
-        os.fsync(stream.fileno())
-    os.replace(path + ".new", path)
-
-
 class Trainer:
     def __init__(self, options):
         self.options = options
@@ -276,9 +267,9 @@ class Trainer:
             "validated": self.scenes(self.validated),
             "learnt": self.scenes(self.learnt),
         }
-        replace(checkpoint.path_in(folder), lambda stream: torch.save(state, stream))
+        checkpoint.replace(checkpoint.path_in(folder), lambda stream: torch.save(state, stream))
         losses = json.dumps({"seconds": self.seconds, "losses": self.losses, "times": self.times}, indent=1)
-        replace(os.path.join(folder, "losses.json"), lambda stream: stream.write(losses.encode()))
+        checkpoint.replace(os.path.join(folder, "losses.json"), lambda stream: stream.write(losses.encode()))
         pictures.write_curves(os.path.join(folder, "losses.svg"), self.losses, phases=("both",))
         row = torch.cat([pictures.shown(light[0].cpu()) for light in self.shown], dim=2)
         pictures.write_png(os.path.join(folder, "validation.png"), row)

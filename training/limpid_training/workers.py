@@ -35,14 +35,19 @@ class Workers:
         devices = [self.device] if self.device.type == "cuda" else None
         return DistributedDataParallel(module, device_ids=devices, bucket_cap_mb=PIECE_MB, broadcast_buffers=False)
 
-    def agreed(self, decision):
-        """Returns the first worker's decision, a bool. Clocks differ, and a worker that stopped alone would leave the
-        others waiting for its gradients."""
+    def told(self, number):
+        """Returns the first worker's number, a float. Clocks differ, and workers with different learning rates would
+        drift apart."""
         if self.count == 1:
-            return decision
-        value = torch.tensor([int(decision)], device=self.device)
+            return number
+        value = torch.tensor([number], dtype=torch.float64, device=self.device)
         distributed.broadcast(value, 0)
-        return bool(value.item())
+        return value.item()
+
+    def agreed(self, decision):
+        """Returns the first worker's decision, a bool. A worker that stopped alone would leave the others waiting for
+        its gradients."""
+        return bool(self.told(float(decision)))
 
     def close(self):
         """Nothing may use a module of shared() any more. If one were the last to hold the connection, PyTorch would

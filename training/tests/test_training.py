@@ -2,9 +2,6 @@ import contextlib
 import io
 import json
 import os
-import socket
-import subprocess
-import sys
 import tempfile
 import unittest
 from unittest import mock
@@ -15,7 +12,7 @@ import torch
 from limpid_training import compare, data, evaluate, export, features, pictures, tensor_file, train
 from limpid_training.network import Kpcn
 
-from . import first_gradients
+from . import first_gradients, together
 
 LAYERS = {"diffuse": 3, "specular": 3, "albedo": 3, "normal": 3, "depth": 1}
 
@@ -258,29 +255,8 @@ class TrainingTest(unittest.TestCase):
         with self.assertRaises(SystemExit):
             export.export(os.path.join(self.folder, "colours"), os.path.join(self.folder, "w.safetensors"))
 
-    def start_workers(self, count, *module_and_arguments):
-        """Starts workers like torchrun, and returns their output. (Debian's torchrun does not work with Debian's
-        Python.)"""
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = str(free.getsockname()[1])
-        workers = []
-        for rank in map(str, range(count)):
-            world = {"WORLD_SIZE": str(count), "RANK": rank, "LOCAL_RANK": rank, "MASTER_ADDR": "127.0.0.1"}
-            environment = dict(os.environ, OMP_NUM_THREADS="1", MASTER_PORT=port, **world)
-            workers.append(
-                subprocess.Popen([sys.executable, "-m", *module_and_arguments], env=environment, stdout=subprocess.PIPE,
-                                 stderr=subprocess.STDOUT))
-        try:
-            output = [worker.communicate(timeout=240)[0].decode() for worker in workers]
-        finally:
-            for worker in workers:
-                worker.kill()  # what has not ended
-        self.assertEqual([worker.returncode for worker in workers], [0] * count, output)
-        return output
-
     def train_together(self, count, run, *more):
-        return self.start_workers(count, "limpid_training.train", *self.options(run, *more))
+        return together.start_workers(self, count, "limpid_training.train", *self.options(run, *more))
 
     def losses_of(self, run):
         with open(os.path.join(self.folder, run, "losses.json")) as stream:
@@ -298,7 +274,7 @@ class TrainingTest(unittest.TestCase):
             trainer.workers.count, trainer.workers.number = 2, number
             expected.append(first_gradients.of(trainer))
         file = os.path.join(self.folder, "gradients.pt")
-        self.start_workers(2, "tests.first_gradients", file, *self.options("together"))
+        together.start_workers(self, 2, "tests.first_gradients", file, *self.options("together"))
         for mine, yours, mean in zip(*expected, torch.load(file)):
             self.assertGreater((mine - yours).abs().max(), 0)
             self.assertTrue(torch.allclose(mean, (mine + yours) / 2, rtol=1e-3, atol=1e-7))

@@ -1,0 +1,1 @@
+"""Trains the network of Limpid's denoiser `nano`. docs/nano.md explains how to use this package."""

@@ -1,0 +1,44 @@
+"""Exports the weights of a training run to the file that is built into Limpid's denoiser `nano`.
+
+    python3 -m limpid_training.nano.export RUN -o ../weights/nano.safetensors
+
+weights.py describes the file. Its metadata hold the parameters of the training."""
+
+import argparse
+import json
+
+import torch
+
+from .. import checkpoint, tensor_file
+from . import network, weights
+
+#: Options of a training that say nothing of the network.
+OF_THE_CALL = ("clips", "output", "device", "resume", "overwrite", "validation", "report", "save", "time_limit")
+
+
+def metadata_of(state):
+    options = {key: value for key, value in state.get("options", {}).items() if key not in OF_THE_CALL}
+    training = {"dataset": state.get("dataset"), "steps": state.get("step"), "seconds": round(state.get("seconds", 0)),
+                "options": options}
+    return {"limpid.network": "nano", "limpid.training": json.dumps(training)}
+
+
+def export(run, output):
+    state = weights.read(run)
+    trained = weights.of_checkpoint(state)
+    shape = network.shape_of(trained)
+    if shape != network.SHIPPED:
+        checkpoint.end(f"{run}: has the shape {shape}; Limpid computes only {network.SHIPPED}", checkpoint.USAGE)
+    tensors = weights.to_file(trained)
+    for name, tensor in tensors.items():
+        if not torch.isfinite(tensor).all():
+            raise SystemExit(f"{run}: some of '{name}' are no finite numbers in half precision")
+    tensor_file.write(output, tensors, metadata_of(state), by_name=False)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(prog="limpid_training.nano.export", description=__doc__.split("\n")[0])
+    parser.add_argument("run", help="output folder of limpid_training.nano.train, or a checkpoint")
+    parser.add_argument("-o", "--output", required=True, help="safetensors file to write")
+    chosen = parser.parse_args()
+    export(chosen.run, chosen.output)
