@@ -65,6 +65,17 @@ size_t uploadsTogether(std::span<const RecordedUpload> uploads) {
     return count;
 }
 
+/// Splits the uploads of a frame into those that are staged together.
+std::vector<std::span<const RecordedUpload>> uploadGroups(std::span<const RecordedUpload> uploads,
+                                                          bool foreign) {
+    std::vector<std::span<const RecordedUpload>> groups;
+    while (!uploads.empty()) {
+        groups.push_back(uploads.first(foreign ? uploads.size() : uploadsTogether(uploads)));
+        uploads = uploads.subspan(groups.back().size());
+    }
+    return groups;
+}
+
 }  // namespace
 
 FrameExecutor::FrameExecutor(std::shared_ptr<const Context> context, std::shared_ptr<PipelineCache> pipelines,
@@ -119,6 +130,8 @@ void FrameExecutor::recordFrame(const RecordedFrame& frame, FrameSlot& slot, con
     images_.collect(submitted_);
     acquireImages(frame);
     bindPasses(frame, slot);
+    for (const std::span<const RecordedUpload> group : uploadGroups(frame.uploads, foreign_))
+        slot.reserveStaging(group.back().at + group.back().size - group.front().at);
     prepareImages(frame, slot.commands(), scope);
     clearHistories(frame, slot.commands());
     recordUploads(frame, slot);
@@ -306,12 +319,10 @@ void FrameExecutor::clear(const RecordedFrame& frame, VkCommandBuffer commands) 
 
 void FrameExecutor::recordUploads(const RecordedFrame& frame, FrameSlot& slot) {
     if (frame.uploads.empty()) return;
-    std::span<const RecordedUpload> rest = frame.uploads;
-    while (!rest.empty()) {
-        const size_t count = foreign_ ? rest.size() : uploadsTogether(rest);
-        recordCopies(frame, rest.first(count), slot);
-        rest = rest.subspan(count);
-        if (!rest.empty()) slot.flush();  // the staging buffer is used again
+    const auto groups = uploadGroups(frame.uploads, foreign_);
+    for (size_t i = 0; i < groups.size(); ++i) {
+        if (i > 0) slot.flush();  // the staging buffer is used again
+        recordCopies(frame, groups[i], slot);
     }
     memoryBarrier(*context_, slot.commands(), VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                   VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,

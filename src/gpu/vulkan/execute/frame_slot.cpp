@@ -157,15 +157,16 @@ VkDescriptorBufferInfo FrameSlot::pushParams(std::span<const std::byte> params) 
     return {params_->buffer.get(), offset, params.size()};
 }
 
+void FrameSlot::reserveStaging(uint64_t bytes) {
+    if (staging_ && staging_->size >= bytes) return;
+    staging_.reset();
+    // Small uploads vary from frame to frame, so leave room; pictures do not vary and are too large for that.
+    staging_ = makeBuffer(context_, name("uploads"), BufferUse::Staging,
+                          std::max<uint64_t>(64 << 10, bytes < (256u << 10) ? 2 * bytes : bytes));
+}
+
 VkBuffer FrameSlot::stage(std::span<const RecordedUpload> uploads, std::span<const std::byte> copies) {
-    const uint64_t first = uploads.front().at, bytes = uploads.back().at + uploads.back().size - first;
-    if (!staging_ || staging_->size < bytes) {
-        staging_.reset();
-        // Small uploads vary from frame to frame, so leave room; pictures do not vary and are too large for
-        // that.
-        staging_ = makeBuffer(context_, name("uploads"), BufferUse::Staging,
-                              std::max<uint64_t>(64 << 10, bytes < (1u << 20) ? 2 * bytes : bytes));
-    }
+    const uint64_t first = uploads.front().at;
     for (const RecordedUpload& upload : uploads)
         std::memcpy(staging_->memory.mapped + (upload.at - first),
                     upload.borrowed ? upload.borrowed : copies.data() + upload.copied, upload.size);

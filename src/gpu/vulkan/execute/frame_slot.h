@@ -28,6 +28,8 @@ class FrameSlot {
     /// Copies a parameter struct into the uniform ring buffer.
     VkDescriptorBufferInfo pushParams(std::span<const std::byte> params);
     /// Copies uploads into a staging buffer, from its beginning. `copies` are those that are not borrowed.
+    /// Makes room for so many bytes of uploads. This may fail, and so comes before the frame's first command.
+    void reserveStaging(uint64_t bytes);
     VkBuffer stage(std::span<const RecordedUpload> uploads, std::span<const std::byte> copies);
     /// Writes a timestamp after the passes so far: number 0 before the first pass, number i + 1 after pass i.
     void writeTimestamp(uint32_t stamp);
