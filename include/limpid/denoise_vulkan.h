@@ -54,7 +54,7 @@ typedef struct limpid_vulkan_device_desc {
     int32_t debug_utils;             /* not 0: VK_EXT_debug_utils is enabled; objects and passes get names */
     limpid_message_callback message; /* reserved: it is not called yet; your own messenger hears of Limpid's calls */
     void* message_user;
-    /* Set both or none. None: Limpid allocates one VkDeviceMemory for each of its roughly twenty images. `allocate`
+    /* Set both or none. None: Limpid allocates one VkDeviceMemory for each of its twenty to sixty images. `allocate`
      * returns a block of a memory type allowed by `requirements` that has all of `properties`; if these include the
      * host-visible bit, it must set `mapped`, and the host-coherent bit is among them. Blocks hold buffers or
      * optimally tiled images, and you are not told which: if they share a VkDeviceMemory, align and pad them to

@@ -108,7 +108,8 @@ std::string differenceOf(const json& theirs, const json& ours) {
     return "its parameters are written otherwise";
 }
 
-/// Makes scenes more alike, so that they share pipelines. Only what a shader can do without is added.
+/// Makes scenes more alike, so that they share pipelines. It turns on code that their materials never reach;
+/// the tables that it reads may be empty.
 void generalise(scene::SceneFeatures& features) {
     if (!features.specular) return;
     features.textures = features.alpha = features.transmission = true;

@@ -280,14 +280,19 @@ class Trainer:
                 self.report()
                 reported = now
             if first_worker and now - saved > options.save:
-                self.validate()
-                self.save()
+                self.save_and_validate()
                 saved = now
         if first_worker:
             self.report()
+            self.save_and_validate()
+        self.close()
+
+    def save_and_validate(self):
+        """Saves before and after: nothing is lost where validating fails, or a borrowed machine ends meanwhile."""
+        self.save()
+        if self.judged:
             self.validate()
             self.save()
-        self.close()
 
     def close(self):
         """Nothing more can be learnt afterwards."""

@@ -20,8 +20,9 @@ using gpu::Extent;
 using gpu::Format;
 using gpu::ImageHandle;
 
-/// The logits of a signal at the finest level: 5x5 taps, 4 of the coarser level, the filter's share and
-/// SVGF's, and the weight in the next coarser level. At the others 3x3 taps, and no shares.
+/// The number of the logit that weighs a pixel in the next coarser level, the last of a signal's. Before it,
+/// at the finest level: those of 5x5 taps, of 4 taps of the coarser level, of the filter's share, and of
+/// SVGF's. At the others: of 3x3 taps and of 4.
 constexpr uint32_t poolLogit(size_t level) {
     return level == 0 ? 25 + 4 + 2 : 9 + 4;
 }
@@ -46,7 +47,7 @@ class Nano {
         weights_ =
             graph_.transient("nano/weights", Format::RGBA32Uint,
                              {static_cast<uint32_t>(network_.weights.size() / 16), 1}, Backing::Buffer);
-        graph_.uploadBorrowed(weights_, network_.weights);
+        graph_.upload(weights_, network_.weights);
         ImageHandle channels = features();
         std::array<ImageHandle, NANO_LEVELS> kept;
         for (size_t i = 0; i < NANO_LEVELS; ++i) {
@@ -190,8 +191,9 @@ class Nano {
             return graph_.transient(name, Format::RGBA16Float, picture_, input_.filters);
         };
         const SvgfSignalStages &a = svgf_.signals.front(), &b = svgf_.signals.back();
-        const ImageHandle noSecond =
-            graph_.transient("nano/no second", Format::R32Uint, {1, 1}, input_.filters);
+        const ImageHandle stableToo =
+            twoSignals() ? b.stable
+                         : graph_.transient("nano/no second", Format::R32Uint, {1, 1}, input_.filters);
         const SvgfLight results{image("nano/diffuse"), image("nano/specular")};
         const NanoFilterParams params = filterParams(0);
         graph_.dispatch({.pass = name("filter", 0),
@@ -205,7 +207,7 @@ class Nano {
                                       {"resultA", results[0]},
                                       {"resultB", results[1]},
                                       {"stableA", a.stable},
-                                      {"stableB", twoSignals() ? b.stable : noSecond}},
+                                      {"stableB", stableToo}},
                          .params = gpu::paramsOf(params),
                          .constants = {{"COARSER", 1u},
                                        {"STABILISE", replacesStable() ? 1u : 0u},

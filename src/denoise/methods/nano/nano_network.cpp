@@ -18,7 +18,7 @@ constexpr std::array<uint32_t, NANO_LEVELS> depths{0, 1, 2, 2, 2};
 class Layout {
   public:
     NanoLayer add(uint32_t inputs, uint32_t coarser, uint32_t outputs, uint32_t taps) {
-        const NanoLayer layer{inputs, coarser, outputs, taps, texels_};
+        const NanoLayer layer{inputs, coarser, outputs, texels_};
         texels_ += outputs + taps * (inputs + coarser) * outputs * NANO_GROUP;
         return layer;
     }
@@ -28,12 +28,17 @@ class Layout {
     uint32_t texels_ = 0;
 };
 
-/// The tensors' data: a safetensors file begins with the length of its header in eight bytes, and the header.
-std::span<const std::byte> dataOf(std::span<const uint32_t> words) {
+/// The tensors' data, which has so many bytes: a safetensors file begins with the length of its header in
+/// eight bytes, and the header. Whole words are embedded.
+std::span<const std::byte> dataOf(std::span<const uint32_t> words, size_t bytes) {
     const std::span<const std::byte> file = std::as_bytes(words);
     uint64_t header = 0;
-    std::memcpy(&header, file.data(), sizeof(header));
-    return file.subspan(sizeof(header) + header);
+    if (file.size() >= sizeof(header)) std::memcpy(&header, file.data(), sizeof(header));
+    const size_t before = sizeof(header) + header;
+    if (header >= file.size() || file.size() < before + bytes ||
+        file.size() - before - bytes >= sizeof(uint32_t))
+        throw Error("the weights of 'nano' do not fit its layers");
+    return file.subspan(before, bytes);
 }
 
 NanoNetwork makeNetwork() {
@@ -54,9 +59,7 @@ NanoNetwork makeNetwork() {
         }
         level.logits = layout.add(widths[i], 0, i == 0 ? 8 : 4, 1);
     }
-    const std::span<const std::byte> data = dataOf(embedded::nano_safetensors);
-    if (data.size() < layout.bytes()) throw Error("the weights of 'nano' do not fit its layers");
-    network.weights = data.first(layout.bytes());
+    network.weights = dataOf(embedded::nano_safetensors, layout.bytes());
     return network;
 }
 

@@ -16,7 +16,6 @@ namespace limpid::denoise {
 /// texels, one for each input with the weights of its eight outputs.
 struct NanoLayer {
     uint32_t inputs = 0, coarser = 0, outputs = 0;
-    uint32_t taps = 1;
     uint32_t weights = 0;
 };
 

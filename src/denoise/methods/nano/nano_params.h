@@ -38,7 +38,7 @@ struct NanoConvolveParams {
 };
 
 struct NanoFilterParams {
-    uint width;  // of the level, without its padding only at the finest level
+    uint width;  // of what is written: the picture at the finest level, else the padded level
     uint height;
     uint paddedWidth;
     uint paddedHeight;

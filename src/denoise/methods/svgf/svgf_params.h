@@ -31,7 +31,7 @@ LIMPID_CONST float SVGF_MIN_SLOPE = 0.05;    // minimum cosine: more grazing ang
 LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;  // minimum tolerance, relative to the distance
 LIMPID_CONST float SVGF_MIN_WEIGHTS = 1e-3;  // sums of weights below which neighbours show other surfaces
 // How many equal weights those of neighbours must amount to before a firefly is dimmed by them: (their sum)^2
-// / (sum of their squares). Between one, which has no deviation, and two.
+// / (sum of their squares). One neighbour gives 1, and has no deviation; two alike give 2.
 LIMPID_CONST float SVGF_MIN_ALIKE = 1.5;
 LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // minimum tolerance, relative to the luminance
 
