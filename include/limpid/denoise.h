@@ -119,8 +119,8 @@ typedef enum limpid_method {
     LIMPID_METHOD_VISIBILITY = 4,
     /* SVGF, and behind it a small trained network, which predicts the weights of a filter and how much of SVGF's
      * result to replace. Inputs, outputs and `signals` are those of SVGF, and its parameters `svgf.` count, too.
-     * With two signals closer to the truth, about as stable, slower; one signal was not measured. Light should be
-     * exposed so that white is about 1, and distances be in metres. Needs no files. */
+     * Closer to the truth, about as stable, slower. Light should be exposed so that white is about 1, and distances be
+     * in metres. Needs no files. */
     LIMPID_METHOD_NANO = 5
 } limpid_method;
 
