@@ -23,11 +23,7 @@ void multiply(uvec4 taps[NANO_PIXELS], uint first) {
     [[unroll]] for (int p = 0; p < NANO_PIXELS; ++p) values[p] = unpackEight(taps[p]);
     [[unroll]] for (int i = 0; i < 8; ++i) {
         const Eight w = unpackEight(weights.texels[first + uint(i)]);
-        [[unroll]] for (int p = 0; p < NANO_PIXELS; ++p) {
-            const float x = i < 4 ? values[p].low[i] : values[p].high[i - 4];
-            sums[p].low += x * w.low;
-            sums[p].high += x * w.high;
-        }
+        [[unroll]] for (int p = 0; p < NANO_PIXELS; ++p) addProduct(sums[p], valueOf(values[p], i), w);
     }
 }
 

@@ -56,7 +56,8 @@ float logDistance(ivec2 at) {
     return log2(distanceOf(LOAD_UINT2(surfaces, inside(at))) + 0.01);
 }
 
-/// How far the logarithm of the distance is from the mean of its neighbours': edges and curved surfaces.
+/// Four times the difference of the logarithm of the distance and the mean of its four neighbours': edges and curved
+/// surfaces.
 float bend(ivec2 at, float own) {
     const float around = logDistance(at + ivec2(-1, 0)) + logDistance(at + ivec2(1, 0)) +
                          logDistance(at + ivec2(0, -1)) + logDistance(at + ivec2(0, 1));
@@ -124,14 +125,14 @@ void main() {
     }
     gather(at, a, b);
     const uint index = uint(pixel.y) * params.paddedWidth + uint(pixel.x);
-    light.texels[index] = packLightPair(LightPair(a.color, b.color, distanceOf(LOAD_UINT2(surfaces, at)) > 0.0));
+    const bool sees = distanceOf(LOAD_UINT2(surfaces, at)) > 0.0;
+    light.texels[index] = packLightPair(LightPair(a.color, b.color, sees));
     const uint OUTPUTS = 2u;
     [[unroll]] for (uint group = 0u; group < OUTPUTS; ++group) {
         Eight sum = unpackEight(weights.texels[group]);
         [[unroll]] for (uint i = 0u; i < NANO_FEATURES; ++i) {
-            const Eight w = unpackEight(weights.texels[OUTPUTS + ((i / 8u) * OUTPUTS + group) * 8u + i % 8u]);
-            sum.low += features[i] * w.low;
-            sum.high += features[i] * w.high;
+            const uint at = OUTPUTS + ((i / 8u) * OUTPUTS + group) * 8u + i % 8u;
+            addProduct(sum, features[i], unpackEight(weights.texels[at]));
         }
         channels.texels[index * OUTPUTS + group] = packEight(Eight(leaky(sum.low), leaky(sum.high)));
     }

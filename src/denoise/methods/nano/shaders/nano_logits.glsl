@@ -10,20 +10,15 @@ Eight logitsOf(uint pixel, uint group) {
     uint at = params.weights + all + 8u * group;
     for (uint g = 0u; g < params.groups; ++g, at += 8u * all) {
         const Eight x = unpackEight(inputs.texels[pixel * params.groups + g]);
-        [[unroll]] for (int i = 0; i < 8; ++i) {
-            const Eight w = unpackEight(weights.texels[at + uint(i)]);
-            const float value = i < 4 ? x.low[i] : x.high[i - 4];
-            sum.low += value * w.low;
-            sum.high += value * w.high;
-        }
+        [[unroll]] for (int i = 0; i < 8; ++i)
+            addProduct(sum, valueOf(x, i), unpackEight(weights.texels[at + uint(i)]));
     }
     return sum;
 }
 
 /// The logit of this number among those of a signal.
 float logitOf(Eight logits, int number) {
-    const int i = number % 8;
-    return i < 4 ? logits.low[i] : logits.high[i - 4];
+    return valueOf(logits, number % 8);
 }
 
 #endif

@@ -19,6 +19,17 @@ Eight unpackEight(uvec4 texel) {
     return Eight(unpackHalf4(texel.xy), unpackHalf4(texel.zw));
 }
 
+/// The value of this number, from 0 to 7.
+float valueOf(Eight values, int number) {
+    return number < 4 ? values.low[number] : values.high[number - 4];
+}
+
+/// Adds an input times the weights of eight outputs.
+void addProduct(inout Eight sum, float x, Eight weights) {
+    sum.low += x * weights.low;
+    sum.high += x * weights.high;
+}
+
 uvec4 packEight(Eight values) {
     const vec4 least = vec4(-MAX_HALF), most = vec4(MAX_HALF);
     return uvec4(packHalf4(clamp(values.low, least, most)), packHalf4(clamp(values.high, least, most)));
