@@ -20,11 +20,11 @@ using gpu::Extent;
 using gpu::Format;
 using gpu::ImageHandle;
 
-/// The number of the logit that weighs a pixel in the next coarser level, the last of a signal's. Before it,
-/// at the finest level: those of 5x5 taps, of 4 taps of the coarser level, of the filter's share, and of
-/// SVGF's. At the others: of 3x3 taps and of 4.
+/// The number of the logit that weighs a pixel in the next coarser level, the last of a signal's.
 constexpr uint32_t poolLogit(size_t level) {
-    return level == 0 ? 25 + 4 + 2 : 9 + 4;
+    const bool finest = level == 0;
+    const int edge = 2 * (finest ? NANO_FINEST_REACH : NANO_REACH) + 1, shares = finest ? 2 : 0;
+    return static_cast<uint32_t>(edge * edge + NANO_COARSER_TAPS + shares);
 }
 
 class Nano {
@@ -127,14 +127,14 @@ class Nano {
         const NanoConvolveParams params{.width = extent.width,
                                         .height = extent.height,
                                         .groups = layer.inputs,
-                                        .secondGroups = layer.coarser,
+                                        .coarserGroups = layer.coarser,
                                         .outputGroups = layer.outputs,
                                         .weights = layer.weights};
         graph_.dispatch(
             {.pass = pass,
              .shader = shaders::nano_convolve_comp,
              .bindings = {{"inputs", inputs},
-                          {"second", coarser ? coarser : inputs},
+                          {"coarser", coarser ? coarser : inputs},
                           {"weights", weights_},
                           {"outputs", outputs}},
              .params = gpu::paramsOf(params),

@@ -57,7 +57,8 @@ NanoNetwork makeNetwork() {
             level.join = layout.add(widths[i], widths[i + 1], widths[i], 1);
             level.after = layout.add(widths[i], 0, widths[i], 9);
         }
-        level.logits = layout.add(widths[i], 0, i == 0 ? 8 : 4, 1);
+        level.logits =
+            layout.add(widths[i], 0, 2 * (i == 0 ? NANO_FINEST_LOGIT_GROUPS : NANO_LOGIT_GROUPS), 1);
     }
     network.weights = dataOf(embedded::nano_safetensors, layout.bytes());
     return network;

@@ -15,6 +15,12 @@ LIMPID_CONST int NANO_LEVELS = 5;     // resolutions; each halves the one before
 LIMPID_CONST int NANO_FEATURES = 24;  // that the network sees of a pixel
 LIMPID_CONST int NANO_GROUP = 8;      // channels in a texel of a buffer, as halves
 LIMPID_CONST int NANO_PIXELS = 4;     // in a row, that one invocation of a convolution computes
+// The filter: a pixel has (2 reach + 1)^2 taps of its level and NANO_COARSER_TAPS of the next coarser one. A
+// signal's logits are those of the taps; at the finest level those of the filter's share and of SVGF's; and,
+// but at the coarsest level, that of the pixel in the next coarser level. They fill so many groups.
+LIMPID_CONST int NANO_REACH = 1, NANO_FINEST_REACH = 2;
+LIMPID_CONST int NANO_COARSER_TAPS = 4;
+LIMPID_CONST int NANO_LOGIT_GROUPS = 2, NANO_FINEST_LOGIT_GROUPS = 4;
 // Taps of a convolution.
 LIMPID_CONST uint NANO_POINT = 0u;   // 1x1: of the same pixel, then of the pixel of the next coarser level
 LIMPID_CONST uint NANO_HALVE = 1u;   // 2x2: of the four pixels of the next finer level
@@ -31,8 +37,8 @@ struct NanoFeaturesParams {
 struct NanoConvolveParams {
     uint width;  // of the outputs
     uint height;
-    uint groups;        // of inputs
-    uint secondGroups;  // of inputs of the next coarser level
+    uint groups;         // of inputs
+    uint coarserGroups;  // of inputs of the next coarser level
     uint outputGroups;
     uint weights;  // index of the layer's first texel
 };

@@ -11,7 +11,7 @@ layout(set = 0, binding = 0, scalar) uniform Params {
     NanoConvolveParams params;
 };
 READ_TEXELS(1, inputs);
-READ_TEXELS(2, second);  // of the next coarser level; only with NANO_POINT
+READ_TEXELS(2, coarser);  // of the next coarser level; only with NANO_POINT
 READ_TEXELS(3, weights);
 WRITE_TEXELS(4, outputs);
 
@@ -42,12 +42,12 @@ void addTap(ivec2 first, ivec2 from, int scale, uint number, uint group) {
     multiply(taps, number);
 }
 
-void addSecond(ivec2 first, uint group, uint at) {
+void addCoarser(ivec2 first, uint group, uint at) {
     const uint pitch = params.width / 2u;
     uvec4 taps[NANO_PIXELS];
     [[unroll]] for (int p = 0; p < NANO_PIXELS; ++p) {
-        const uvec2 coarse = uvec2(min(uint(first.x) + uint(p), params.width - 1u), uint(first.y)) / 2u;
-        taps[p] = second.texels[(coarse.y * pitch + coarse.x) * params.secondGroups + group];
+        const uvec2 covers = uvec2(min(uint(first.x) + uint(p), params.width - 1u), uint(first.y)) / 2u;
+        taps[p] = coarser.texels[(covers.y * pitch + covers.x) * params.coarserGroups + group];
     }
     multiply(taps, at);
 }
@@ -68,7 +68,7 @@ void main() {
         for (uint group = 0u; group < params.groups; ++group, at += block)
             addTap(first, from, TAPS == NANO_HALVE ? 2 : 1, at, group);
         if (TAPS != NANO_POINT) continue;
-        for (uint group = 0u; group < params.secondGroups; ++group, at += block) addSecond(first, group, at);
+        for (uint group = 0u; group < params.coarserGroups; ++group, at += block) addCoarser(first, group, at);
     }
     [[unroll]] for (int p = 0; p < NANO_PIXELS; ++p) {
         const uint x = uint(first.x) + uint(p);

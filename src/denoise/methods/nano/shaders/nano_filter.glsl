@@ -4,11 +4,11 @@
 
 #ifdef LIMPID_NANO_FINEST
 #include "denoise/methods/svgf/shaders/svgf_stable.glsl"
-const int REACH = 2, GROUPS = 4;
+const int REACH = NANO_FINEST_REACH, GROUPS = NANO_FINEST_LOGIT_GROUPS;
 #else
-const int REACH = 1, GROUPS = 2;
+const int REACH = NANO_REACH, GROUPS = NANO_LOGIT_GROUPS;
 #endif
-const int EDGE = 2 * REACH + 1, OWN = EDGE * EDGE;
+const int EDGE = 2 * REACH + 1, OWN_TAPS = EDGE * EDGE, ALL_TAPS = OWN_TAPS + NANO_COARSER_TAPS;
 layout(constant_id = 0) const bool COARSER = true;  // there is a coarser level
 #ifdef LIMPID_NANO_FINEST
 layout(constant_id = 1) const bool STABILISE = true;  // the next frame is stabilised by the result
@@ -64,18 +64,18 @@ ivec2 coarseTap(ivec2 at, int number) {
 }
 
 LightPair filtered(ivec2 at, Logits a, Logits b) {
-    const int count = OWN + (COARSER ? 4 : 0);
+    const int count = COARSER ? ALL_TAPS : OWN_TAPS;
     const vec2 most = vec2(largest(a, count), largest(b, count));
     LightSums sums = LightSums(vec4(0.0), vec4(0.0));
     const ivec2 last = ivec2(params.paddedWidth, params.paddedHeight) - 1;
-    [[unroll]] for (int i = 0; i < OWN + 4; ++i) {
+    [[unroll]] for (int i = 0; i < ALL_TAPS; ++i) {
         if (i >= count) continue;
         uvec4 texel;
-        if (i < OWN) {
+        if (i < OWN_TAPS) {
             const ivec2 tap = clamp(at + ivec2(i % EDGE, i / EDGE) - REACH, ivec2(0), last);
             texel = light.texels[uint(tap.y) * params.paddedWidth + uint(tap.x)];
         } else {
-            const ivec2 tap = coarseTap(at, i - OWN);
+            const ivec2 tap = coarseTap(at, i - OWN_TAPS);
             texel = coarser.texels[uint(tap.y) * (params.paddedWidth / 2u) + uint(tap.x)];
         }
         // Not 0, even if the only taps that see a surface have small weights.
@@ -87,7 +87,7 @@ LightPair filtered(ivec2 at, Logits a, Logits b) {
 #ifdef LIMPID_NANO_FINEST
 /// `svgf`: its light, and in the fourth component its deviation; negative: nothing is seen.
 vec4 mixed(vec4 svgf, vec3 own, Logits logits) {
-    const float share = params.strength / (1.0 + exp(logit(logits, OWN + 5) - logit(logits, OWN + 4)));
+    const float share = params.strength / (1.0 + exp(logit(logits, ALL_TAPS + 1) - logit(logits, ALL_TAPS)));
     return svgf.a < 0.0 ? svgf : vec4(mix(svgf.rgb, own, share), svgf.a);
 }
 #endif
