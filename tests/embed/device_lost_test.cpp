@@ -113,8 +113,9 @@ class DeviceLostTest : public VulkanProgramTest {
         VulkanProgramTest::TearDown();
     }
 
-    limpid_denoiser* createTimed() {
+    limpid_denoiser* createTimed(limpid_method method = LIMPID_METHOD_SVGF) {
         limpid_denoiser_desc desc = {};
+        desc.method = method;
         desc.timings = 1;
         desc.frames_in_flight = 1;
         return create(desc);
@@ -216,6 +217,27 @@ TEST_F(DeviceLostTest, AFrameWithoutMemoryCanBeRepeated) {
         }
     }
     EXPECT_GE(met, 12) << "frames call more of them";
+}
+
+/// Whichever allocation fails: nano also has some for its uploads.
+TEST_F(DeviceLostTest, AFirstFrameOfNanoWithoutMemoryCanBeRepeated) {
+    const auto create = [&] { return createTimed(LIMPID_METHOD_NANO); };
+    const std::vector<float> expected = denoiseSequence(create(), SyntheticScene({}), 2);
+    failure = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    reported = true;
+    int calls = 0;
+    for (; reported; ++calls) {
+        limpid_denoiser* denoiser = create();
+        fail(static_cast<int>(Failing::AllocateMemory), calls);
+        const limpid_result result = record(denoiser, 0);
+        EXPECT_EQ(result, reported ? LIMPID_ERROR_OUT_OF_MEMORY : LIMPID_OK);
+        lost = nothing;
+        if (reported) {
+            EXPECT_EQ(denoiseSequence(denoiser, SyntheticScene({}), 2), expected) << calls << " allocations";
+        }
+        destroyLast();
+    }
+    EXPECT_GE(calls, 30) << "frames allocate more often";
 }
 
 TEST_F(DeviceLostTest, AWarmUpWithoutMemoryChangesNothing) {
