@@ -22,6 +22,9 @@
 #include "cli/options/long_render_options.h"
 #include "lab/dataset/dataset_clip.h"
 #include "lab/dataset/dataset_example.h"
+#include "lab/dataset/dataset_motion.h"
+#include "lab/dataset/dataset_night.h"
+#include "lab/dataset/dataset_pipelines.h"
 #include "renderer/long/render_identity.h"
 #include "scene/device/scene_data.h"
 #include "scene/load/scene_files.h"
@@ -44,7 +47,9 @@ struct DatasetOptions {
     uint32_t rooms = 100, stillLifes = 0, perFile = 8;
     std::vector<uint32_t> sequence;  ///< the frames of each clip that are stored; empty: stills
     bool sharePipelines = false;
-    uint32_t pictureHeight = 0;  ///< clips show the middle of a picture of this height; 0: all of it
+    std::string denoiser = "svgf";
+    double moving = 0.0, night = 0.0;  ///< shares of the random clips
+    uint32_t pictureHeight = 0;        ///< clips show the middle of a picture of this height; 0: all of it
     ExampleSettings example;
 };
 
@@ -108,14 +113,6 @@ std::string differenceOf(const json& theirs, const json& ours) {
     return "its parameters are written otherwise";
 }
 
-/// Makes scenes more alike, so that they share pipelines. It turns on code that their materials never reach;
-/// the tables that it reads may be empty.
-void generalise(scene::SceneFeatures& features) {
-    if (!features.specular) return;
-    features.textures = features.alpha = features.transmission = true;
-    features.clearcoat = features.roughGlass = true;
-}
-
 class Dataset {
   public:
     explicit Dataset(const DatasetOptions& options) : o_(options) {}
@@ -151,9 +148,14 @@ class Dataset {
                     {"reference_samples", o_.example.referenceSamples}};
         if (o_.sharePipelines) result["share_pipelines"] = true;  // uses up other random numbers
         if (!o_.sequence.empty()) {
+            result["version"] = 4;
             result["sequence"] = o_.sequence;
             result["picture_height"] = o_.pictureHeight;
         }
+        // Absent by default, so that earlier datasets stay valid.
+        if (o_.denoiser != "svgf") result["denoiser"] = o_.denoiser;
+        if (o_.moving > 0.0) result["moving"] = o_.moving;
+        if (o_.night > 0.0) result["night"] = o_.night;
         return result;
     }
 
@@ -180,11 +182,13 @@ class Dataset {
             if (ranks()) ranks()->beat();
             scene::Scene scene = scene::openScene({.scene = sceneOf(example)});
             if (!o_.sequence.empty() && !scene.rig.clips.empty()) scene::chooseClip(scene, "");
+            const json varied = vary(scene, example);
             scene::SceneData data = scene::buildSceneData(scene);
-            if (o_.sharePipelines) generalise(data.features);
+            if (o_.sharePipelines) generalise(data, variesLight());
             scene::GpuScene gpuScene(device, data, {tracer, {}});
             list.push_back(o_.sequence.empty() ? addStill(device, gpuScene, scene, example, result)
                                                : addMoving(device, gpuScene, scene, data, example, result));
+            list.back().update(varied);
             if (!scene.files.empty()) list.back()["files"] = contentsOf(sceneOf(example), scene);
         }
         result.metadata = {{parametersKey, parameters().dump()}, {examplesKey, list.dump()}};
@@ -258,19 +262,47 @@ class Dataset {
         return camera;
     }
 
-    /// A camera that orbits, drives or shakes, up to four times faster or slower than usual.
+    /// Up to four times faster or slower than usual.
+    SequenceTiming timingOf(uint64_t example) const {
+        return {.framesPerSecond = 30.0 * std::exp2(4.0 * fraction("speed", example) - 2.0),
+                .start = 2.0 * fraction("start", example)};
+    }
+
+    /// Makes the scene of a random clip one at night, and lets things move in it, if it is this example's
+    /// turn. Returns what the list of examples says of that.
+    json vary(scene::Scene& scene, uint64_t example) const {
+        json result = json::object();
+        if (o_.sequence.empty() || example >= uint64_t{o_.rooms} + o_.stillLifes) return result;
+        if (fraction("night", example) < o_.night) {
+            makeNight(scene, numberFrom(o_.example.seed, "lamps at night", example));
+            result["night"] = true;
+        }
+        if (fraction("moving", example) < o_.moving) {
+            const ClipMotion motion = addMotion(scene, numberFrom(o_.example.seed, "motion", example),
+                                                timingOf(example), o_.sequence);
+            result["moving"] = {
+                {"objects", motion.objects}, {"lights", motion.lights}, {"switched", motion.switched}};
+        } else if (o_.sharePipelines && o_.moving > 0.0) {
+            addStillClip(scene);
+        }
+        return result;
+    }
+
+    /// Whether random clips may have other lights than their scenes.
+    bool variesLight() const { return o_.moving > 0.0 || o_.night > 0.0; }
+
+    /// A camera that orbits, drives or shakes.
     json addMoving(gpu::Device& device, scene::GpuScene& gpuScene, const scene::Scene& scene,
                    const scene::SceneData& data, uint64_t example, neural::TensorFile& result) const {
         ClipSettings settings{.extent = o_.example.extent,
                               .frames = o_.sequence,
                               .samples = o_.example.samples.front(),
                               .referenceSamples = o_.example.referenceSamples,
-                              .seed = numberFrom(o_.example.seed, "samples", example)};
+                              .seed = numberFrom(o_.example.seed, "samples", example),
+                              .denoiser = o_.denoiser};
         constexpr std::array paths{"orbit", "dolly", "shake"};
         const std::string path = paths[numberFrom(o_.example.seed, "path", example) % paths.size()];
-        const SequenceTiming timing{
-            .framesPerSecond = 30.0 * std::exp2(4.0 * fraction("speed", example) - 2.0),
-            .start = 2.0 * fraction("start", example)};
+        const SequenceTiming timing = timingOf(example);
         const scene::Camera camera = cameraOf(scene);
         const Sequence sequence(
             scene, data, camera,
@@ -341,6 +373,8 @@ void run(const DatasetOptions& o) {
     }
     if (o.pictureHeight > 0 && (o.sequence.empty() || o.pictureHeight < o.example.extent.height))
         throw UsageError("--picture-height goes with --sequence, and is at least --height");
+    if (o.sequence.empty() && (o.denoiser != "svgf" || o.moving > 0.0 || o.night > 0.0))
+        throw UsageError("--denoiser, --moving and --night go with --sequence");
     if (o.rooms + o.stillLifes == 0 && o.scenes.empty())
         throw UsageError("choose at least one room, still life or scene");
     checkPictureSize(o.example.extent);
@@ -357,6 +391,34 @@ void run(const DatasetOptions& o) {
                   o.folder);
     else
         log::info("the shard {} is done; the others are not yet", o.shard);
+}
+
+void addClipOptions(CLI::App& command, DatasetOptions& o) {
+    command
+        .add_option("--sequence", o.sequence,
+                    "Clips of a moving camera instead of stills: the numbers of the frames to store, "
+                    "comma-separated (1,3,7,15); with one number of --samples")
+        ->delimiter(',')
+        ->check(CLI::Range(0, 100000));
+    command
+        .add_option("--picture-height", o.pictureHeight,
+                    "With --sequence: clips show the middle of a picture of this height, pixels (that of the "
+                    "clips)")
+        ->check(CLI::Range(1, 16384));
+    command
+        .add_option("--denoiser", o.denoiser,
+                    "With --sequence: what filters the clips, so that it is also their past: svgf or nano "
+                    "(svgf)")
+        ->check(CLI::IsMember({"svgf", "nano"}));
+    command
+        .add_option("--moving", o.moving,
+                    "With --sequence: share of the random clips in which objects or lights move, or lights "
+                    "are switched (0)")
+        ->check(CLI::Range(0.0, 1.0));
+    command
+        .add_option("--night", o.night,
+                    "With --sequence: share of the random clips in which all is dim but one or two lamps (0)")
+        ->check(CLI::Range(0.0, 1.0));
 }
 
 }  // namespace
@@ -386,18 +448,7 @@ void addDatasetCommand(CLI::App& app) {
                      "Samples per pixel of the clean pictures; more is cleaner and slower (1024)")
         ->check(CLI::Range(1, 1 << 24));
     command->add_option("--per-file", o->perFile, "Examples per file (8)")->check(CLI::Range(1, 10000));
-    command
-        ->add_option("--sequence", o->sequence,
-                     "Clips of a moving camera instead of stills: the numbers of the frames to store, "
-                     "comma-separated (1,3,7,15); with one number of --samples")
-        ->delimiter(',')
-        ->check(CLI::Range(0, 100000));
-    command
-        ->add_option(
-            "--picture-height", o->pictureHeight,
-            "With --sequence: clips show the middle of a picture of this height, pixels (that of the "
-            "clips)")
-        ->check(CLI::Range(1, 16384));
+    addClipOptions(*command, *o);
     command->add_flag(
         "--share-pipelines", o->sharePipelines,
         "Trace scenes of different materials by the same pipelines; for drivers that take longer "

@@ -92,6 +92,7 @@ void addFrame(gpu::Device& device, FrameRenderer& renderer, const std::string& p
     file.tensors[prefix + "normal"] = tensorOf(layers.get("normal", "XYZ"));
     file.tensors[prefix + "roughness"] = tensorOf(layers.get("roughness", "R"));
     file.tensors[prefix + "depth"] = tensorOf(distancesOf(layers));
+    file.tensors[prefix + "motion"] = tensorOf(layers.get("motion", "XY"));
 }
 
 RenderSettings noisySettings(const ClipSettings& settings) {
@@ -100,7 +101,7 @@ RenderSettings noisySettings(const ClipSettings& settings) {
     render.seed = settings.seed;
     // References go through the pixels' centres, and a shifted picture is none of them.
     render.jitter = Jitter::Off;
-    render.pipeline = parsePipeline("path", "svgf");
+    render.pipeline = parsePipeline("path", settings.denoiser);
     render.samplesPerLaunch = settings.samples;
     render.layers = true;
     return render;

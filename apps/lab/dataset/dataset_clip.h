@@ -19,20 +19,22 @@ struct ClipSettings {
     uint32_t samples = 1;                       ///< per pixel and frame
     uint32_t referenceSamples = 1024;           ///< of each of both references
     uint32_t seed = 0;
+    std::string denoiser = "svgf";  ///< or "nano"
 };
 
-/// Renders the frames from 0 on, filters them by SVGF with its defaults, and adds tensors (channels, rows,
-/// columns) of halves to `file`, all finite. For each stored frame F and each SIGNAL of "diffuse" and
+/// Renders the frames from 0 on, filters them by the denoiser with its defaults, and adds tensors (channels,
+/// rows, columns) of halves to `file`, all finite. For each stored frame F and each SIGNAL of "diffuse" and
 /// "specular":
 /// - "NAME/F/SIGNAL" (4): accumulated light without albedo, and the expected deviation of its luminance,
 ///   below 0 where nothing is seen;
 /// - "NAME/F/SIGNAL.first" (4): the same after the first level of the filter, or where the history is short
 ///   after "svgf/young";
-/// - "NAME/F/SIGNAL.svgf" (4): the same after the last level, stabilised;
+/// - "NAME/F/SIGNAL.svgf" (4): the same after SVGF's last level;
 /// - "NAME/F/SIGNAL.past" (3): stabilised light of the frame before;
 /// - "NAME/F/SIGNAL.frames" (1): the length of the history;
-/// - "NAME/F/LAYER" with the layers albedo, albedoSpecular, emission, normal (3), depth, roughness (1);
-/// - "NAME/F/svgf" (4): SVGF's picture;
+/// - "NAME/F/LAYER" with the layers albedo, albedoSpecular, emission, normal (3), motion (2; 65504: none),
+///   depth, roughness (1);
+/// - "NAME/F/svgf" (4): the denoiser's picture;
 /// - "NAME/F/reference" (3): clean beauty through the pixels' centres, and "NAME/F/reference2" the same with
 ///   noise that is independent of the first one's;
 /// - "NAME/F/camera" (4, 3; float32): the camera's right, up and forward vectors, and its origin.
