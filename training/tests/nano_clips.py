@@ -42,6 +42,7 @@ def make_frame(rows, columns, generator):
     layers["normal"] = -seen * CAMERA[2][:, None, None]
     layers["depth"] = seen[None] * (2 + 0.01 * x + 0.1 * y)
     layers["roughness"] = seen[None] * 0.5
+    layers["motion"] = torch.where(seen[None] > 0, torch.tensor([0.5, -1.0])[:, None, None], torch.tensor(65504.0))
     layers["reference"], layers["reference2"] = clean + noise(scale=0.02), clean + noise(scale=0.02)
     return layers
 

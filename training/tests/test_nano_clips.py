@@ -1,3 +1,4 @@
+import itertools
 import os
 import tempfile
 import unittest
@@ -5,7 +6,7 @@ import unittest
 import torch
 
 from limpid_training import tensor_file
-from limpid_training.nano import clips
+from limpid_training.nano import clips, warp
 
 from . import nano_clips
 
@@ -63,7 +64,7 @@ class CropsTest(unittest.TestCase):
             layers[0], layers[1], layers[2] = clip, y, x
             frames.append(clips.Stored(str(clip), 1, layers.half()))
         self.assertEqual(clips.smallest_edge(frames), 13)
-        cut = clips.crops(frames, 200, 8, torch.Generator().manual_seed(1)).float()
+        cut = clips.crops([(frame,) for frame in frames], 200, 8, torch.Generator().manual_seed(1))[0].float()
         self.assertEqual(cut.shape, (200, clips.CHANNELS, 8, 8))
         self.assertEqual(set(cut[:, 0, 0, 0].tolist()), {0, 1, 2})
         self.assertEqual(set(cut[:, 1, 0, 0].tolist()), {0, 2, 4, 6, 8, 10, 12})
@@ -73,8 +74,22 @@ class CropsTest(unittest.TestCase):
 
     def test_may_be_whole_frames(self):
         frames = [clips.Stored("0", 1, torch.rand(clips.CHANNELS, 9, 9).half())]
-        cut = clips.crops(frames, 2, 9, torch.Generator().manual_seed(1))
-        self.assertTrue(torch.equal(cut[1], frames[0].channels))
+        cut = clips.crops([frames], 2, 9, torch.Generator().manual_seed(1))
+        self.assertTrue(torch.equal(cut[0, 1], frames[0].channels))
+
+    def test_pairs_are_consecutive_frames_in_the_same_place(self):
+        with tempfile.TemporaryDirectory() as folder:
+            frames = clips.load(nano_clips.make_clips(os.path.join(folder, "clips"), numbers=(1, 2, 9, 10, 11)))
+        pairs = clips.pairs_of(frames)
+        self.assertEqual([(first.clip, first.number, second.clip, second.number) for first, second in pairs],
+                         [(clip, n, clip, n + 1) for clip in ("000000", "000001") for n in (1, 9, 10)])
+        for first, second in pairs:  # marks the pixels
+            for image, place in itertools.product((first, second), (0, 1)):
+                image.channels[place] = torch.arange(40.0)[:, None] if place else torch.arange(36.0)
+        cut = clips.crops(pairs, 20, 8, torch.Generator().manual_seed(1))
+        self.assertEqual(cut.shape, (2, 20, clips.CHANNELS, 8, 8))
+        self.assertTrue(torch.equal(cut[0, :, :2], cut[1, :, :2]))
+        self.assertGreater(len(set(cut[0, :, 0, 0, 0].tolist())), 3)
 
 
 def normals_of(height):
@@ -94,11 +109,25 @@ class VariedTest(unittest.TestCase):
         channels[:, clips.PLACES["normal"], 1:-1, 1:-1] = normals_of(height)
         generator, kinds = torch.Generator().manual_seed(2), set()
         for _ in range(60):
-            varied = clips.varied(channels, generator)
+            varied = clips.varied(channels[None], generator)
             depth, normal = varied[:, clips.PLACES["depth"]], varied[:, clips.PLACES["normal"], 1:-1, 1:-1]
             self.assertTrue(torch.allclose(normal, normals_of(depth), atol=1e-5))
             kinds.add(tuple(depth[0, 0, 0, :3].tolist()))
         self.assertEqual(len(kinds), 8, "a square has eight symmetries")
+
+    def test_motion_still_leads_to_the_same_surface(self):
+        y, x = torch.meshgrid(torch.arange(12.0), torch.arange(12.0), indexing="ij")
+        frames = torch.zeros(2, 1, clips.CHANNELS, 12, 12)
+        frames[0, 0, clips.PLACES["roughness"]] = x + 0.1 * y
+        frames[1, 0, clips.PLACES["roughness"]] = x + 1.5 + 0.1 * (y - 2)  # where the frame before had it
+        frames[1, 0, clips.PLACES["motion"]] = torch.tensor([1.5, -2.0])[:, None, None]
+        generator = torch.Generator().manual_seed(2)
+        for _ in range(20):
+            frame = clips.Frame(clips.varied(frames, generator))
+            before, after = frame.roughness.chunk(2)
+            fetched, valid = warp.carried(before, frame.motion.chunk(2)[1])
+            self.assertEqual(valid.sum().item(), 10 * 10)
+            self.assertLess(((fetched - after) * valid).abs().max().item(), 1e-4)
 
     def test_varied_frames_are_other_views_of_the_same(self):
         channels = nano_clips.make_batch(16, 16)
@@ -115,7 +144,7 @@ class VariedTest(unittest.TestCase):
         before = clips.Frame(channels)
         generator, factors, orders = torch.Generator().manual_seed(4), [], set()
         for _ in range(40):
-            after = clips.Frame(clips.varied(channels, generator))
+            after = clips.Frame(clips.varied(channels[None], generator))
             factor = after.deviation.amax((1, 2, 3, 4)) / before.deviation.amax((1, 2, 3, 4))
             factors.append(factor)
             orders.add(tuple(after.albedo[0, 0].mean((1, 2)).argsort().tolist()))

@@ -85,6 +85,24 @@ class ErrorTest(unittest.TestCase):
         self.assertLessEqual(each.max().item(), 1)
         self.assertAlmostEqual(judge.error(svgf).item(), each.mean().item(), places=5)
 
+    def test_a_change_is_that_of_the_error_along_the_surface(self):
+        frame = clips.Frame(torch.cat([nano_clips.make_batch(12, 12), nano_clips.make_batch(12, 12)]))
+        frame.motion = torch.tensor([2.0, -1.0])[None, :, None, None].expand(4, 2, 12, 12)
+        frame.frames = torch.full((4, 2, 12, 12), 5.0)
+        frame.frames[3, 1, :, 5] = 1  # has just appeared
+        frame.svgf = torch.full((4, 3, 12, 12), 0.5)
+        truth = torch.rand(4, 3, 12, 12)
+        frame.references = (truth, truth)
+        judge = loss.Judge(frame)
+        error = 0.02 * torch.rand(4, 3, 12, 12)
+        error[2:, :, 1:, :10] = error[:2, :, :11, 2:]  # moves along
+        self.assertLess(judge.change(truth + error).item(), 1e-12)
+        error[2, :, 4, 4] += 0.01
+        error[3, :, 4, 5] += 0.01
+        weight = judge.weights[2, :, 4, 4] * 0.01
+        expected = 0.5 * weight.square().sum() * loss.SCALE * judge.scale[2].item() / (2 * 3 * 12 * 12)
+        self.assertAlmostEqual(judge.change(truth + error).item() / expected.item(), 1, places=3)
+
 
 class EvaluateTest(unittest.TestCase):
     def test_what_is_svgf_has_its_errors(self):
@@ -92,7 +110,7 @@ class EvaluateTest(unittest.TestCase):
                   for clip in range(2) for number in (1, 3)]
         net = network.Net(network.Shape((8, 8), (0, 0), (3, 3)))
         with torch.no_grad():
-            net.heads[0].bias.view(2, -1)[:, net.kernel_logits(0) + 1] = 1e4  # SVGF's share is 1
+            net.heads[0].bias.view(2, -1)[:, net.kernel_logits(0)] = 1e4  # SVGF's share is 1
         results = evaluate.evaluate(net, stored)
         self.assertEqual([(result["clip"], result["frame"]) for result in results],
                          [("000000", 1), ("000000", 3), ("000001", 1), ("000001", 3)])

@@ -70,6 +70,18 @@ class TrainingTest(unittest.TestCase):
         self.assertLess(after[1], 0.5 * before[1])
         self.assertLess(after[1], 0.5 * judge.error(frame.svgf).item(), "SVGF's picture is too dark")
 
+    def test_pairs_of_frames_and_several_folders(self):
+        more = nano_clips.make_clips(self.path("more"), numbers=(4, 5))
+        options = self.options("run", "--steps", "2")
+        trainer = train.Trainer(train.parse([self.data, more, *options[1:]]))
+        self.assertEqual(len(trainer.frames), 8)
+        self.assertEqual([(before.number, after.number) for before, after in trainer.groups], [(4, 5), (4, 5)])
+        frame = trainer.batch()
+        self.assertEqual(frame.depth.shape, (2, 1, 32, 32), "one pair is a batch of two")
+        with mock.patch.object(loss.Judge, "change", lambda judge, picture: 100 * picture.mean()):
+            changed = trainer.loss(frame).item()
+        self.assertGreater(changed, trainer.loss(frame).item() + 1)
+
     def test_leaves_what_it_learnt(self):
         other = nano_clips.make_clips(self.path("other"), files=1, rows=20, columns=24)
         trainer = self.train("run", "--steps", "6", "--save", "0", "--report", "0", "--validation", other)
@@ -216,7 +228,7 @@ class TrainingTest(unittest.TestCase):
         gradients = []
         for number in (0, 1):
             trainer.workers.number = number
-            trainer.frames = clips.load(self.data, "cpu", number, 2)
+            trainer.use(clips.load(self.data, "cpu", number, 2))
             trainer.optimizer.zero_grad()
             trainer.loss(trainer.batch()).backward()
             gradients.append([weight.grad.clone() for weight in trainer.net.parameters()])

@@ -17,8 +17,8 @@ SIGNALS = ("diffuse", "specular")
 LAYERS = {
     "diffuse": 4, "specular": 4, "diffuse.first": 3, "specular.first": 3, "diffuse.svgf": 3, "specular.svgf": 3,
     "diffuse.past": 3, "specular.past": 3, "diffuse.frames": 1, "specular.frames": 1, "albedo": 3,
-    "albedoSpecular": 3, "emission": 3, "normal": 3, "depth": 1, "roughness": 1, "svgf": 3, "reference": 3,
-    "reference2": 3}
+    "albedoSpecular": 3, "emission": 3, "normal": 3, "depth": 1, "roughness": 1, "motion": 2, "svgf": 3,
+    "reference": 3, "reference2": 3}
 
 #: The layers that grow with the brightness of the scene's lights.
 LIGHT = [name for name in LAYERS if name.split(".")[0] in SIGNALS and not name.endswith("frames")]
@@ -33,6 +33,9 @@ CHANNELS = sum(LAYERS.values())
 
 #: Light is divided by albedo of at least this much (docs/denoising.md), and so multiplied by no less.
 LEAST_ALBEDO = 0.01
+
+#: Longer motion than this, in pixels, is none.
+MOST_MOTION = 1000
 
 #: A frame in memory. `channels`: halves (CHANNELS, rows, columns).
 Stored = collections.namedtuple("Stored", ("clip", "number", "channels"))
@@ -85,43 +88,56 @@ def smallest_edge(frames):
     return min(min(frame.channels.shape[1:]) for frame in frames)
 
 
-def crops(frames, count, edge, generator):
-    """Returns (count, CHANNELS, edge, edge): squares of randomly chosen frames. They begin at even rows and columns,
-    as the 2x2 pixels do that the network's next level joins."""
+def pairs_of(frames):
+    """Returns a list of each frame whose next one is stored, too, and that next one. load() returns frames in order."""
+    return [(frame, after) for frame, after in zip(frames, frames[1:])
+            if frame.clip == after.clip and frame.number + 1 == after.number]
+
+
+def crops(groups, count, edge, generator):
+    """Returns (frames of a group, count, CHANNELS, edge, edge): of randomly chosen groups of frames squares that are in
+    the same place. They begin at even rows and columns, as the 2x2 pixels do that the network's next level joins."""
     chosen = []
     for _ in range(count):
-        image = frames[int(torch.randint(len(frames), (1,), generator=generator))].channels
+        group = groups[int(torch.randint(len(groups), (1,), generator=generator))]
         top, left = (2 * int(torch.randint((size - edge) // 2 + 1, (1,), generator=generator))
-                     for size in image.shape[1:])
-        chosen.append(image[:, top : top + edge, left : left + edge])
-    return torch.stack(chosen)
+                     for size in group[0].channels.shape[1:])
+        chosen.append(torch.stack([frame.channels[:, top : top + edge, left : left + edge] for frame in group]))
+    return torch.stack(chosen, 1)
 
 
 def varied(channels, generator):
-    """Data augmentation: mirrors and transposes a batch (batch, CHANNELS, rows, columns), permutes its colours, all of
-    it in the same way, and scales the light of each frame by its own factor from 1/4 to 4. Returns floats.
+    """Data augmentation: mirrors and transposes a batch (frames of a group, batch, CHANNELS, rows, columns), permutes its
+    colours, all of it in the same way, and scales the light of each group by its own factor from 1/4 to 4. Returns
+    floats (frames of a group * batch, CHANNELS, rows, columns).
 
     The result is still a valid batch. Only the deviations of light are slightly off: they are of the luminance, which
     changes when colours are permuted."""
     draws = torch.rand(3, generator=generator).tolist()
     colours = torch.randperm(3, generator=generator).tolist()
-    brightness = torch.exp2(4 * torch.rand(channels.shape[0], 1, 1, 1, generator=generator) - 2).to(channels.device)
+    frames, count = channels.shape[:2]
+    brightness = torch.exp2(4 * torch.rand(count, 1, 1, 1, generator=generator) - 2).to(channels.device)
+    brightness = brightness.repeat(frames, 1, 1, 1)
+    channels = channels.flatten(0, 1)
     sources, signs = list(range(CHANNELS)), torch.ones(CHANNELS, device=channels.device)
     for name in LIGHT + ["albedo", "albedoSpecular"]:
         first = PLACES[name].start
         sources[first : first + 3] = [first + colour for colour in colours]
     right, up = PLACES["normal"].start, PLACES["normal"].start + 1
+    x, y = PLACES["motion"].start, PLACES["motion"].start + 1
     if draws[0] < 0.5:
         channels = channels.flip(3)
-        signs[right] *= -1
+        signs[[right, x]] *= -1
     if draws[1] < 0.5:
         channels = channels.flip(2)
-        signs[up] *= -1
+        signs[[up, y]] *= -1
     if draws[2] < 0.5:
         # What pointed down then points to the right, and what pointed to the right points down: minus up.
         channels = channels.transpose(2, 3)
         sources[right], sources[up] = up, right
         signs[right], signs[up] = -signs[up].item(), -signs[right].item()
+        sources[x], sources[y] = y, x
+        signs[x], signs[y] = signs[y].item(), signs[x].item()
     light = torch.zeros(CHANNELS, device=channels.device)
     for name in LIGHT:
         light[PLACES[name]] = 1
@@ -154,13 +170,17 @@ class Frame:
         self.albedo = torch.stack([layer("albedo"), layer("albedoSpecular")], 1)
         self.emission, self.normal, self.roughness = layer("emission"), layer("normal"), layer("roughness")
         self.depth = layer("depth")
+        #: The position in the frame before, minus this one: columns and rows; above MOST_MOTION if there is none.
+        self.motion = layer("motion")
         #: 1 where a surface is seen, else 0.
         self.seen = (self.depth > 0).float()
-        self.svgf = layer("svgf")
+        self.picture = layer("svgf")
+        #: SVGF's picture. That of the clip is the same, unless another method filtered the clip.
+        self.svgf = self.compose(self.filtered)
         #: Clean pictures whose noise is independent.
         self.references = (layer("reference"), layer("reference2"))
 
     def compose(self, light):
         """Returns the picture (batch, 3, rows, columns) with this light of both signals."""
         picture = (light * self.albedo.clamp(min=LEAST_ALBEDO)).sum(1) + self.emission
-        return torch.where(self.seen > 0, picture, self.svgf)
+        return torch.where(self.seen > 0, picture, self.picture)

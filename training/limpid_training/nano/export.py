@@ -18,7 +18,7 @@ OF_THE_CALL = ("clips", "output", "device", "resume", "overwrite", "validation",
 
 def metadata_of(state):
     options = {key: value for key, value in state.get("options", {}).items() if key not in OF_THE_CALL}
-    training = {"dataset": state.get("dataset"), "steps": state.get("step"), "seconds": round(state.get("seconds", 0)),
+    training = {"datasets": state.get("datasets"), "steps": state.get("step"), "seconds": round(state.get("seconds", 0)),
                 "options": options}
     return {"limpid.network": "nano", "limpid.training": json.dumps(training)}
 

@@ -11,10 +11,15 @@ the differences are about those of pixels on a screen: sRGB, linearised. Nothing
   whose noise a and b is independent, the mean of (x - A)(x - B) is that of (x - T)^2 - (x - T)(a + b) + a b. The last
   two have the mean 0. So the product is an unbiased estimate of (x - T)^2. A single one can be negative.
 
-For both, the weights must not depend on the references' noise. They are computed from SVGF's picture."""
+The loss of a change is such a square, too: of the error's change from a frame to the next one. Both references' noise
+only adds to it.
+
+For all, the weights must not depend on the references' noise. They are computed from SVGF's picture."""
 
 import torch
 from torch.nn import functional
+
+from . import warp
 
 #: Differences of about a third of the range from black to white, and larger ones, count by their absolute value:
 #: fireflies of the references would otherwise decide the gradient.
@@ -66,7 +71,7 @@ class Judge:
     or small: differences of means over 5x5 pixels, where little of the references' noise is left, tell how large."""
 
     def __init__(self, frame):
-        self.references = frame.references
+        self.references, self.motion, self.frames = frame.references, frame.motion, frame.frames
         self.weights = weights_of(frame)
         self.mean = 0.5 * (self.references[0] + self.references[1])
         off = blurred((frame.svgf - self.mean) * self.weights, 2)
@@ -76,6 +81,17 @@ class Judge:
         difference = functional.huber_loss(picture * self.weights, self.mean * self.weights, delta=LARGEST_SQUARE,
                                            reduction="none")
         return (difference * SCALE * self.scale).mean()
+
+    def change(self, picture):
+        """Returns the loss of the errors' change from frame to frame: the first half of the batch are the frames before
+        those of the second half. Surfaces are followed; those that have just appeared do not count."""
+        before, after = (picture - self.mean).chunk(2)
+        before, valid = warp.carried(before, self.motion.chunk(2)[1])
+        valid = valid & (self.frames.chunk(2)[1].amin(1, keepdim=True) > 1)
+        weights, scale = self.weights.chunk(2)[1], self.scale.chunk(2)[1]
+        difference = torch.where(valid, (after - before) * weights, 0 * after)
+        return (functional.huber_loss(difference, 0 * difference, delta=LARGEST_SQUARE, reduction="none") * SCALE *
+                scale).mean()
 
     def error(self, picture):
         """Returns an unbiased estimate of the error, but for outliers."""

@@ -25,6 +25,10 @@ from . import clips, evaluate, loss, network, weights
 #: picture says little about the filter, which could then never become the better one.
 OWN_WEIGHT = 0.3
 
+#: Weight of the loss of the error's change from frame to frame, where both frames are in the clips. It counts errors
+#: that flicker more than those that stay: of two pictures with the same error, the calmer one is better.
+CHANGE_WEIGHT = 0.15
+
 #: Steps in which the learning rate rises to its full value.
 WARM_UP = 100
 
@@ -48,13 +52,14 @@ def text_of(numbers):
 
 def parse(arguments=None):
     parser = argparse.ArgumentParser(prog="limpid_training.nano.train", description=__doc__.split("\n")[0])
-    parser.add_argument("clips", help="output folder of `limpid dataset --sequence`")
+    parser.add_argument("clips", nargs="+", help="output folders of `limpid dataset --sequence`")
     parser.add_argument("-o", "--output", required=True, help="folder for the checkpoint and the plots")
     length = parser.add_mutually_exclusive_group(required=True)
     length.add_argument("--seconds", type=float, help="length of the training; over it the learning rate falls")
     length.add_argument("--steps", type=int, help="the same, counted in batches")
     parser.add_argument("--validation", metavar="CLIPS", help="other clips, to measure errors on")
-    parser.add_argument("--batch", type=int, default=16, help="crops per batch and GPU")
+    parser.add_argument("--batch", type=int, default=16,
+                        help="crops per batch and GPU; half as many pairs if the clips have consecutive frames")
     parser.add_argument("--crop", type=int, default=192,
                         help="edge length of a crop in pixels; smaller if frames are")
     parser.add_argument("--rate", type=float, default=2e-3, help="the largest learning rate")
@@ -109,15 +114,24 @@ class Trainer:
             self.restore(saved)
         self.predictor = self.workers.shared(self.net)
         try:
-            self.frames = clips.load(options.clips, self.workers.device, self.workers.number, self.workers.count)
+            self.use([frame for folder in options.clips for frame in
+                      clips.load(folder, self.workers.device, self.workers.number, self.workers.count)])
             self.judged = []
             if options.validation and self.workers.number == 0:
                 self.judged = clips.load(options.validation, self.workers.device)
-            self.dataset = clips.manifest_of(options.clips)["dataset"]
+            self.datasets = [clips.manifest_of(folder)["dataset"] for folder in options.clips]
         except (OSError, ValueError) as fault:
             checkpoint.end(str(fault), checkpoint.UNREADABLE)
-        self.edge = min(options.crop, clips.smallest_edge(self.frames))
         self.clear_sums()
+
+    def use(self, frames):
+        """Learns from these frames."""
+        self.frames = frames
+        self.edge = min(self.options.crop, clips.smallest_edge(frames))
+        pairs = clips.pairs_of(frames)
+        #: What crops are cut from: pairs of frames, or single ones where no two follow each other.
+        self.groups = pairs or [(frame,) for frame in frames]
+        self.paired = bool(pairs)
 
     def load(self):
         """Returns the checkpoint to begin with, if it is of this network; None if the weights are new."""
@@ -167,7 +181,8 @@ class Trainer:
 
     def batch(self):
         generator = self.generator()
-        chosen = clips.crops(self.frames, self.options.batch, self.edge, generator)
+        count = max(self.options.batch // (2 if self.paired else 1), 1)
+        chosen = clips.crops(self.groups, count, self.edge, generator)
         return clips.Frame(clips.varied(chosen, generator))
 
     def elapsed(self):
@@ -180,9 +195,11 @@ class Trainer:
         picture, own = frame.compose(filtered.light), frame.compose(filtered.own)
         judge = loss.Judge(frame)
         result = judge.loss(picture) + OWN_WEIGHT * judge.loss(own)
+        if self.paired:
+            result = result + CHANGE_WEIGHT * judge.change(picture)
         with torch.no_grad():
             self.sums += torch.stack([judge.error(picture), judge.error(frame.svgf), judge.error(own),
-                                      filtered.share.mean(), result])
+                                      filtered.share.mean(), filtered.past.mean(), result])
         return result
 
     def learn(self):
@@ -201,18 +218,19 @@ class Trainer:
         self.counted += 1
 
     def clear_sums(self):
-        self.sums, self.counted = torch.zeros(5, device=self.workers.device), 0
+        self.sums, self.counted = torch.zeros(6, device=self.workers.device), 0
 
     def report(self):
         if not self.counted:
             return
-        picture, svgf, own, share, mean_loss = (self.sums / self.counted).tolist()
+        picture, svgf, own, share, past, mean_loss = (self.sums / self.counted).tolist()
         least = max(svgf, 1e-9)  # the estimate of an error that is about 0 can be negative
         seconds = self.elapsed()
         self.reports.append({"step": self.step, "seconds": seconds, "training": picture / least,
-                             "own": own / least, "share": share, "loss": mean_loss, "rate": self.rate()})
+                             "own": own / least, "share": share, "past": past, "loss": mean_loss, "rate": self.rate()})
         print(f"step {self.step}, {seconds:.0f} s: error over SVGF's {picture / least:.4f}, of the filter alone "
-              f"{own / least:.4f}, its share {share:.2f}, loss {mean_loss:.3e}, rate {self.rate():.2e}", flush=True)
+              f"{own / least:.4f}, its share {share:.2f}, the past's {past:.2f}, loss {mean_loss:.3e}, "
+              f"rate {self.rate():.2e}", flush=True)
         self.clear_sums()
 
     def validate(self):
@@ -240,7 +258,7 @@ class Trainer:
             "reports": self.reports,
             "validations": self.validations,
             "options": vars(self.options),
-            "dataset": self.dataset,
+            "datasets": self.datasets,
         }
         checkpoint.replace(checkpoint.path_in(folder), lambda stream: torch.save(state, stream))
         losses = json.dumps({"reports": self.reports, "validations": self.validations}, indent=1)
