@@ -177,6 +177,40 @@ TEST_P(MotionTest, MorphCube) {
     checkFile("morph_cube", "AnimatedMorphCube.gltf", "dolly", 1.3);
 }
 
+// Nothing that rays hit moves then.
+TEST_P(MotionTest, ALightAloneMoves) {
+    const vec3 from(-0.5f, 1.5f, 0.3f), to(0.6f, 1.2f, -0.2f);
+    const auto picture = [&](bool moves) {
+        scene::Scene scene = scene::builtinScene("cornell");
+        scene::PunctualLight light;
+        light.position = moves ? from : to;
+        light.intensity = vec3(3.0f);
+        if (moves) {
+            scene.rig.nodes.push_back({.name = "light", .translation = from});
+            scene.rig.order = {0};
+            light.node = 0;
+            scene.rig.clips.push_back({"moves",
+                                       {{0,
+                                         scene::AnimatedValue::Translation,
+                                         scene::Interpolation::Linear,
+                                         3,
+                                         {0.0f, 1.0f},
+                                         {from.x, from.y, from.z, to.x, to.y, to.z}}}});
+        }
+        scene.lights.push_back(light);
+        if (moves) scene::chooseClip(scene, "");
+        const scene::SceneData data = scene::buildSceneData(scene);
+        scene::GpuScene gpuScene(device(), data, GetParam());
+        const Sequence sequence(scene, data, scene.cameras.at(0), std::nullopt, {.start = 1.0});
+        RenderSettings settings;
+        settings.extent = {64, 48};
+        FrameRenderer renderer(device(), gpuScene, settings, 1);
+        renderer.render(sequence.moment(0, settings.extent));
+        return renderer.download().beauty;
+    };
+    EXPECT_EQ(picture(true), picture(false));
+}
+
 TEST_P(MotionTest, WithoutAPreviousFrameMotionIsInvalid) {
     scene::Scene scene = scene::cornellMovingScene();
     scene::chooseClip(scene, "");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "base/error.h"
 #include "cli/cluster/session.h"
@@ -31,11 +32,15 @@ gpu::ImageHandle imageOf(const gpu::FrameGraph& graph, const std::string& pass, 
 }
 
 /// The same, of floats, on the host.
-Image pictureOf(FrameRenderer& renderer, const std::string& pass, std::string_view ending) {
-    for (auto& [name, picture] : renderer.dump(pass)) {
-        if (name.ends_with(ending)) return picture;
-    }
-    throw Error(fmt::format("the pass '{}' writes no image '{}'", pass, ending));
+Image pictureOf(gpu::Device& device, gpu::FrameGraph& graph, const std::string& pass,
+                std::string_view ending) {
+    const gpu::ImageHandle image = imageOf(graph, pass, ending);
+    const gpu::Extent extent = graph.extent(image);
+    std::vector<float> pixels = graph.downloadFloat(device, image);
+    const size_t components = pixels.size() / (size_t{extent.width} * extent.height);
+    Image picture(extent.width, extent.height, static_cast<uint32_t>(components));
+    picture.pixels = std::move(pixels);
+    return picture;
 }
 
 /// svgf_stable.glsl: three signed numbers of 9 bits, and an exponent of 5 bits.
@@ -74,13 +79,13 @@ void addFrame(gpu::Device& device, FrameRenderer& renderer, const std::string& p
     const std::string lastLevel = fmt::format("svgf/level {}", denoise::SvgfSettings{}.levels);
     for (const std::string signal : {"diffuse", "specular"}) {
         const std::string reproject = "svgf/reproject " + signal;
-        file.tensors[prefix + signal] = tensorOf(pictureOf(renderer, "svgf/variance " + signal, "color"));
-        file.tensors[prefix + signal + ".first"] = tensorOf(pictureOf(renderer, "svgf/level 1", signal));
-        file.tensors[prefix + signal + ".svgf"] = tensorOf(pictureOf(renderer, lastLevel, signal));
+        file.tensors[prefix + signal] = tensorOf(pictureOf(device, graph, "svgf/variance " + signal, "color"));
+        file.tensors[prefix + signal + ".first"] = tensorOf(pictureOf(device, graph, "svgf/level 1", signal));
+        file.tensors[prefix + signal + ".svgf"] = tensorOf(pictureOf(device, graph, lastLevel, signal));
         file.tensors[prefix + signal + ".past"] =
             tensorOf(stableLight(device, graph, imageOf(graph, reproject, "stable past")));
         file.tensors[prefix + signal + ".frames"] =
-            tensorOf(componentOf(pictureOf(renderer, reproject, "moments"), 3));
+            tensorOf(componentOf(pictureOf(device, graph, reproject, "moments"), 3));
     }
     const RenderedLayers rendered = renderer.download();
     Image filtered(rendered.extent.width, rendered.extent.height, 4);

@@ -242,6 +242,7 @@ Aabb SceneAnimator::boundsOf(const DeformingInstance& deforming, const Moment& m
 }
 
 void SceneAnimator::addMovingTree(const Moment& now, SceneFrame& frame) const {
+    if (!motion_.moving) return;  // only lights or cameras move
     std::vector<TopLeaf> leaves;
     std::vector<Aabb> bounds;
     for (const MovingLeaf& leaf : motion_.leaves) bounds.push_back(leaf.bounds);
