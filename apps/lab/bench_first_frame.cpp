@@ -68,11 +68,13 @@ void run(const FirstFrameBench& o) {
     const denoise::HostFrame host = noisyWall(o.width, o.height);
     gpu::Device device(o.device.device);
     loadPipelines(device, pipelineFile(device));
+    const gpu::FilterChoice choice = gpu::filterChoice(device);
     gpu::FrameGraph graph;
     const auto record = [&] {
         graph.beginFrame();
         denoise::DenoiserInput input = denoise::upload(graph, host);
-        input.filters = gpu::filterBacking(device);
+        input.filters = choice.backing;
+        input.matrices = choice.matrices;
         method->record(graph, input, {}, {});
     };
     record();

@@ -105,7 +105,7 @@ TEST_F(HostFramesTest, SvgfAndNanoAreTheSameInsideAndOutside) {
             const HostFrame frame = embeddable(scene, number);
             const limpid_host_frame given = hostFrame(frame, depths, ids, result);
             ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
-            filters_ = gpu::filterBacking(device());
+            filters_ = gpu::filterChoice(device()).backing;
             inside = denoise(*denoise::findDenoiser(name), frame);
         }
         // Not equal bit for bit: cameras are converted to matrices and back, which rounds, and pixels without
@@ -134,7 +134,7 @@ TEST_F(HostFramesTest, AMaskIsTheSameInsideAndOutside) {
         given.inputs[LIMPID_INPUT_RADIANCE] = {mask.data(), 1, 0, 0};
         given.outputs[LIMPID_OUTPUT_COLOR] = {clean.data(), 1, 0, 0};
         ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
-        filters_ = gpu::filterBacking(device());
+        filters_ = gpu::filterChoice(device()).backing;
         inside = denoise(*denoise::findDenoiser("visibility"), frame);
     }
     std::vector<float> grey;

@@ -252,7 +252,7 @@ TEST_F(VulkanFramesTest, RefusesSizesThatTheDeviceDoesNotHave) {
     // On GPUs, the buffers of the largest pictures exceed most limits.
     desc.height = 32768;
     const uint64_t range = device().impl().context->limits().maxStorageBufferRange;
-    if (gpu::filterBacking(device()) == gpu::Backing::Buffer && range < uint64_t{8} * 32768 * 32768) {
+    if (gpu::filterChoice(device()).backing == gpu::Backing::Buffer && range < uint64_t{8} * 32768 * 32768) {
         EXPECT_EQ(limpid_denoiser_create(adopted_, &desc, &large), LIMPID_ERROR_UNSUPPORTED);
     }
     // The network's channels are in buffers on all devices.

@@ -26,7 +26,7 @@ void checkSize(const gpu::Device& device, const limpid_denoiser_desc& desc) {
     };
     check(std::max(desc.width, desc.height), device.maxImageSide(), "pixels in a side");
     gpu::FrameGraph dry;
-    recordDryFrame(dry, desc, {}, gpu::filterBacking(device), {}, false);
+    recordDryFrame(dry, desc, {}, gpu::filterChoice(device), {}, false);
     check(dry.largestBufferBytes(), device.maxStorageBufferBytes(), "bytes in a buffer");
 }
 
@@ -92,7 +92,7 @@ std::vector<DryFrame> dryFrames() {
 }
 
 void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const FilterSettings& settings,
-                    gpu::Backing filters, const DryFrame& frame, bool signalsToo) {
+                    const gpu::FilterChoice& choice, const DryFrame& frame, bool signalsToo) {
     const gpu::Extent extent{desc.width, desc.height};
     constexpr gpu::ForeignImage nowhere{.image = 1, .view = 1};
     graph.beginFrame();
@@ -112,8 +112,8 @@ void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, co
     for (auto* projection : {&camera.projection, &camera.previous_projection})
         std::ranges::copy(frame.orthographic ? identity : perspective, *projection);
     const gpu::ImageHandle target = graph.import("output/color", frame.color, extent, nowhere);
-    const InstanceOutputs outputs = recordFrame(
-        graph, desc, settings, images, ingestParams(desc, camera, true), filters, signalsToo, target);
+    const InstanceOutputs outputs = recordFrame(graph, desc, settings, images,
+                                                ingestParams(desc, camera, true), choice, signalsToo, target);
     if (outputs.color != target) output(graph, "color", outputs.color, target);
     if (outputs.radiance) {
         output(graph, "radiance", outputs.radiance,
@@ -128,7 +128,7 @@ limpid_denoiser::limpid_denoiser(const limpid_device& on, const limpid_denoiser_
     desc.name = nullptr;  // a string of the caller's; the graph has its own copy
     for (const DryFrame& frame : dryFrames()) {
         gpu::FrameGraph dry;
-        recordDryFrame(dry, desc, settings, gpu::filterBacking(*device), frame, true);
+        recordDryFrame(dry, desc, settings, gpu::filterChoice(*device), frame, true);
         dry.prepare(*device);
     }
 }
@@ -207,7 +207,8 @@ limpid_result limpid_denoiser_memory(const limpid_denoiser_desc* desc, int32_t f
         uint64_t& most = required(bytes, "bytes") = 0;
         for (const DryFrame& frame : {DryFrame{}, DryFrame{.without = {LIMPID_INPUT_REFLECTION_MOTION}}}) {
             gpu::FrameGraph dry(graphOptions(d));
-            recordDryFrame(dry, d, {}, for_gpu ? gpu::Backing::Buffer : gpu::Backing::Image, frame, false);
+            recordDryFrame(dry, d, {}, {.backing = for_gpu ? gpu::Backing::Buffer : gpu::Backing::Image},
+                           frame, false);
             most = std::max(most, dry.imageBytes());
         }
     });

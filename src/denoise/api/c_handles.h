@@ -50,7 +50,7 @@ std::vector<DryFrame> dryFrames();
 
 /// Records the frame to find out what prepare() and memory need.
 void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const FilterSettings& settings,
-                    gpu::Backing filters, const DryFrame& frame, bool signalsToo);
+                    const gpu::FilterChoice& choice, const DryFrame& frame, bool signalsToo);
 
 /// Throws UsageError if an input that the method requires is missing.
 void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images);

@@ -83,7 +83,7 @@ extern "C" limpid_result limpid_denoise_host(limpid_denoiser* denoiser, const li
         d.graph.beginFrame();
         const IngestImages images = uploadInputs(d.graph, d.desc, frame);
         const InstanceOutputs outputs = recordFrame(d.graph, d.desc, d.settings, images, params,
-                                                    gpu::filterBacking(*d.device), signalsToo, {});
+                                                    gpu::filterChoice(*d.device), signalsToo, {});
         const gpu::ImageHandle made[] = {outputs.color, outputs.radiance, outputs.specular};
         for (size_t i = 0; i < LIMPID_OUTPUT_MAX; ++i)
             if (wanted[i].data && (i >= std::size(made) || !made[i]))

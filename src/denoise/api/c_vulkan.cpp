@@ -305,7 +305,7 @@ limpid_result limpid_record(limpid_denoiser* denoiser, VkCommandBuffer commands,
         const IngestImages images = importInputs(d.graph, d.desc, frame);
         const Targets targets = importOutputs(d.graph, d.desc, frame, true);
         recordOutputs(d.graph,
-                      recordFrame(d.graph, d.desc, d.settings, images, params, gpu::filterBacking(*d.device),
+                      recordFrame(d.graph, d.desc, d.settings, images, params, gpu::filterChoice(*d.device),
                                   wantsSignals(frame), targets[LIMPID_OUTPUT_COLOR]),
                       targets);
         d.graph.record(*d.device, commands);
@@ -329,13 +329,13 @@ limpid_result limpid_warm_up(limpid_denoiser* denoiser, VkCommandBuffer commands
         const IngestImages images = importInputs(*graph, few, frame);
         const Targets targets = importOutputs(*graph, few, frame, false);
         recordOutputs(*graph,
-                      recordFrame(*graph, few, d.settings, images, params, gpu::filterBacking(*d.device),
+                      recordFrame(*graph, few, d.settings, images, params, gpu::filterChoice(*d.device),
                                   wantsSignals(frame), targets[LIMPID_OUTPUT_COLOR]),
                       targets);
         graph->record(*d.device, commands);
         d.warmUps.push_back(std::move(graph));
         // Memory is given when it is first written, which takes a CPU longer than a frame.
-        recordDryFrame(d.graph, d.desc, d.settings, gpu::filterBacking(*d.device),
+        recordDryFrame(d.graph, d.desc, d.settings, gpu::filterChoice(*d.device),
                        {.without = missingInputs(frame), .orthographic = params.camera.orthographic != 0},
                        wantsSignals(frame));
         d.graph.clearImages(*d.device, commands);

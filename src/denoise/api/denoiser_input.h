@@ -35,7 +35,8 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     vec2 jitter{0.0f};
     /// The jitter changes from frame to frame, to smooth edges: TaaSettings::frames is 2 by default.
     bool jitterChanges = false;
-    gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterBacking(device)
+    gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterChoice(device)
+    bool matrices = false;                       ///< likewise
     /// Made by the ingest pass, or empty: what the surfaces stage makes of a frame's layers. With them,
     /// methods whose `readsLayers` is false find normal, depth and ids empty.
     gpu::History surfaces;

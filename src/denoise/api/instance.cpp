@@ -164,7 +164,7 @@ IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera&
 
 InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
                             const FilterSettings& settings, const IngestImages& images,
-                            const IngestParams& params, gpu::Backing filters, bool signalsToo,
+                            const IngestParams& params, const gpu::FilterChoice& choice, bool signalsToo,
                             gpu::ImageHandle target) {
     IngestImages taken = images;
     if (desc.demodulated) taken.albedo = taken.albedoSpecular = {};
@@ -176,7 +176,8 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
                                  {.twoSignals = desc.signals == 2,
                                   .layers = method.readsLayers || antialiases,
                                   .albedo = !method.oneChannel,
-                                  .filters = filters});
+                                  .filters = choice.backing});
+    input.matrices = choice.matrices;
     input.jitter = params.motion.jitter;
     if (!antialiases && !used.temporal.showDisocclusion) input.target = target;
     input.wantsSignals = signalsToo;

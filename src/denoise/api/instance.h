@@ -41,7 +41,7 @@ IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera&
 /// image for the colour, or empty; the method may write it itself, and it is then what is returned.
 InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
                             const FilterSettings& settings, const IngestImages& images,
-                            const IngestParams& params, gpu::Backing filters, bool signalsToo,
+                            const IngestParams& params, const gpu::FilterChoice& choice, bool signalsToo,
                             gpu::ImageHandle target);
 
 /// Returns the name of an input for messages and debuggers, such as "radiance".

@@ -55,6 +55,12 @@ struct ImageHandle {
 /// are faster.
 enum class Backing { Image, Buffer };
 
+/// What filters choose by the device.
+struct FilterChoice {
+    Backing backing = Backing::Image;  ///< of images that they read many times
+    bool matrices = false;             ///< cooperative matrices (DeviceInfo::cooperativeMatrices)
+};
+
 struct Image;  ///< defined in gpu/vulkan/memory/image.h, for gpu/ only
 
 /// An image that the caller owns, with the values that Vulkan uses. `view` has one layer and one level. How

@@ -125,8 +125,8 @@ void Device::onNewPipelines(std::function<void()> listener) {
     impl_->pipelines->onNewPipelines(std::move(listener));
 }
 
-Backing filterBacking(const Device& device) {
-    return device.isCpu() ? Backing::Image : Backing::Buffer;
+FilterChoice filterChoice(const Device& device) {
+    return {device.isCpu() ? Backing::Image : Backing::Buffer, device.info().cooperativeMatrices};
 }
 
 }  // namespace limpid::gpu

@@ -151,8 +151,8 @@ class Device {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Returns the best storage for images that filters read many times: buffers on GPUs, images on CPUs
-/// (docs/benchmarks.md).
-Backing filterBacking(const Device& device);
+/// Returns what is best on the device: buffers on GPUs, images on CPUs (docs/benchmarks.md); matrices where
+/// it has them.
+FilterChoice filterChoice(const Device& device);
 
 }  // namespace limpid::gpu

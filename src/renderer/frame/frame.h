@@ -18,17 +18,17 @@ namespace limpid {
 struct FrameInput {
     CameraParams camera;
     CameraParams previousCamera;
-    bool hasPrevious = false;                    ///< there is a previous frame to compute motion from
-    const scene::SceneFrame* moved = nullptr;    ///< what moved since the scene was last traced
-    uint32_t firstSample = 0;                    ///< per pixel since the last reset, before this frame
-    uint64_t raysBefore = 0;                     ///< per pixel in this picture, before this frame
-    uint32_t firstPoint = 0;                     ///< CameraLaunch::firstPoint
-    float jitterSpan = 1.0f;                     ///< CameraLaunch::jitterSpan
-    uint64_t stream = 0;                         ///< the launch's number, for streamOf(): modulo 2^32
-    uint64_t samplesBefore = 0;                  ///< per pixel, in the running means
-    uint32_t samples = 1;                        ///< per pixel, in this frame
-    uint32_t launchSamples = UINT32_MAX;         ///< maximum per launch, if a denoiser follows
-    gpu::Backing filters = gpu::Backing::Image;  ///< storage of images that filters read many times
+    bool hasPrevious = false;                  ///< there is a previous frame to compute motion from
+    const scene::SceneFrame* moved = nullptr;  ///< what moved since the scene was last traced
+    uint32_t firstSample = 0;                  ///< per pixel since the last reset, before this frame
+    uint64_t raysBefore = 0;                   ///< per pixel in this picture, before this frame
+    uint32_t firstPoint = 0;                   ///< CameraLaunch::firstPoint
+    float jitterSpan = 1.0f;                   ///< CameraLaunch::jitterSpan
+    uint64_t stream = 0;                       ///< the launch's number, for streamOf(): modulo 2^32
+    uint64_t samplesBefore = 0;                ///< per pixel, in the running means
+    uint32_t samples = 1;                      ///< per pixel, in this frame
+    uint32_t launchSamples = UINT32_MAX;       ///< maximum per launch, if a denoiser follows
+    gpu::FilterChoice filters;
     bool reasons = false;  ///< for debugging: the denoiser also tells why it kept or rejected histories
 };
 

@@ -37,7 +37,7 @@ FrameRenderer::FrameRenderer(gpu::Device& device, scene::GpuScene& scene, const 
       scene_(scene),
       settings_(settings),
       samples_(samples),
-      filters_(gpu::filterBacking(device)) {}
+      filters_(gpu::filterChoice(device)) {}
 
 bool FrameRenderer::setSettings(const RenderSettings& settings) {
     const bool anew = !sameSamples(settings, settings_);

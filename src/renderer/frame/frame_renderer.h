@@ -73,7 +73,7 @@ class FrameRenderer {
     uint64_t samplesInMean() const { return samplesInMean_; }
 
     /// Overrides the device's default, for measurements and tests.
-    void setFilterBacking(gpu::Backing backing) { filters_ = backing; }
+    void setFilterBacking(gpu::Backing backing) { filters_.backing = backing; }
 
     /// For debugging: whether the following frames also tell why the denoiser kept or rejected histories.
     void setReasons(bool wanted) { reasons_ = wanted; }
@@ -116,7 +116,7 @@ class FrameRenderer {
     scene::GpuScene& scene_;
     RenderSettings settings_;
     uint64_t samples_;
-    gpu::Backing filters_;
+    gpu::FilterChoice filters_;
     bool reasons_ = false;
     gpu::FrameGraph graph_;
     Moment moment_;
