@@ -65,6 +65,7 @@ class DenoiseTest : public GpuTest {
         graph_.beginFrame();
         denoise::DenoiserInput input = denoise::upload(graph_, frame);
         input.filters = filters_;
+        input.matrices = matrices_;
         output_ = method.record(graph_, input, settings, networks_);
         graph_.execute(device());
         return graph_.downloadFloat(device(), output_.beauty);
@@ -74,6 +75,7 @@ class DenoiseTest : public GpuTest {
     denoise::DenoiserOutput output_;
     denoise::DenoiserNetworks networks_;
     gpu::Backing filters_ = gpu::Backing::Image;
+    bool matrices_ = false;  ///< cooperative matrices, on devices that have them
 };
 
 }  // namespace limpid::test

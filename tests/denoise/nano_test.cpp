@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "base/half.h"
 #include "denoise/methods/nano/nano_network.h"
 #include "denoise/stages/ingest/ingest.h"
 #include "tests/denoise/denoise_fixture.h"
@@ -130,6 +131,12 @@ struct Rms {
     double get() const { return std::sqrt(sum / static_cast<double>(count)); }
 };
 
+/// What a layer computed.
+struct Layer {
+    std::string pass;
+    std::vector<float> channels;
+};
+
 class NanoTest : public DenoiseTest {
   protected:
     static const denoise::Denoiser& nano() { return *denoise::findDenoiser("nano"); }
@@ -144,6 +151,13 @@ class NanoTest : public DenoiseTest {
     std::vector<dvec4> result(size_t signal) {
         return download("nano/filter 0", signal == 0 ? "nano/diffuse" : "nano/specular");
     }
+
+    bool hasMatrices() { return device().info().cooperativeMatrices; }
+    std::string withoutMatrices() {
+        return "NOT TESTED: " + device().info().name +
+               " has no cooperative matrices (VK_NV_cooperative_matrix)";
+    }
+    std::vector<Layer> layers(const Case& c);
 
     NanoSignal stages(const Signal& signal, const HostFrame& frame, const SvgfSettings& settings);
     NanoFrame stages(const HostFrame& frame, const DenoiserSettings& settings);
@@ -253,18 +267,21 @@ void NanoTest::compare(const HostFrame& frame, const DenoiserSettings& settings)
     if (!HasFatalFailure()) comparePicture(frame, settings);
 }
 
-using CaseParam = std::tuple<Case, gpu::Backing>;
+using CaseParam = std::tuple<Case, gpu::FilterChoice>;
 
 std::string nameOf(const testing::TestParamInfo<CaseParam>& info) {
-    return std::string(std::get<0>(info.param).name) +
-           (std::get<1>(info.param) == gpu::Backing::Image ? "Images" : "Buffers");
+    const auto& [c, choice] = info.param;
+    const bool images = choice.backing == gpu::Backing::Image;
+    return std::string(c.name) + (choice.matrices ? "Matrices" : images ? "Images" : "Buffers");
 }
 
 class NanoCaseTest : public NanoTest, public testing::WithParamInterface<CaseParam> {};
 
 TEST_P(NanoCaseTest, TheLightAgreesWithTheFormulasInDouble) {
-    const Case& c = std::get<0>(GetParam());
-    filters_ = std::get<1>(GetParam());
+    const auto& [c, choice] = GetParam();
+    if (choice.matrices && !hasMatrices()) GTEST_SKIP() << withoutMatrices();
+    filters_ = choice.backing;
+    matrices_ = choice.matrices;
     DenoiserSettings settings;
     settings.svgf = c.svgf;
     settings.svgf.separate = c.separate;
@@ -278,19 +295,22 @@ TEST_P(NanoCaseTest, TheLightAgreesWithTheFormulasInDouble) {
     EXPECT_GT(changes_.get(), 0.01 * lights_.get()) << "else there is nothing to compare";
 }
 
+constexpr gpu::FilterChoice inImages{}, inBuffers{.backing = gpu::Backing::Buffer},
+    withMatrices{.backing = gpu::Backing::Buffer, .matrices = true};
+
 /// Filters in buffers differ in where they load and store: cases of sizes, signals and histories tell.
 INSTANTIATE_TEST_SUITE_P(
-    Both, NanoCaseTest,
+    All, NanoCaseTest,
     testing::Combine(testing::Values(Case{.name = "Odd"}, Case{.name = "Tiny", .columns = 5, .rows = 3},
                                      Case{.name = "Joint", .separate = false},
                                      Case{.name = "Nans", .change = Change::Nans},
                                      Case{.name = "Smaller", .change = Change::Smaller},
                                      Case{.name = "NoPast",
                                           .svgf = {.stabilisationAlpha = 1.0f, .levels = 1}}),
-                     testing::Values(gpu::Backing::Image, gpu::Backing::Buffer)),
+                     testing::Values(inImages, inBuffers, withMatrices)),
     nameOf);
 INSTANTIATE_TEST_SUITE_P(
-    Images, NanoCaseTest,
+    NotInBuffers, NanoCaseTest,
     testing::Combine(
         testing::Values(Case{.name = "Even", .columns = 48, .rows = 48},
                         Case{.name = "Large", .columns = 83, .rows = 50},
@@ -303,7 +323,7 @@ INSTANTIATE_TEST_SUITE_P(
                         Case{.name = "NoLevels", .svgf = {.levels = 0}},
                         Case{.name = "OneLevelFedBack", .svgf = {.levels = 1, .historyLevel = 1}},
                         Case{.name = "HalfStrength", .strength = 0.5f}),
-        testing::Values(gpu::Backing::Image)),
+        testing::Values(inImages, withMatrices)),
     nameOf);
 
 TEST_F(NanoTest, WithoutStrengthItIsSvgf) {
@@ -318,6 +338,49 @@ TEST_F(NanoTest, WithoutStrengthItIsSvgf) {
     for (int number = 0; number < 4; ++number) {
         const std::vector<float> svgf = denoise(*denoise::findDenoiser("svgf"), frameOf(c, number), settings);
         EXPECT_EQ(pictures[static_cast<size_t>(number)], svgf) << number;
+    }
+}
+
+/// The layers of the first frame.
+std::vector<Layer> NanoTest::layers(const Case& c) {
+    graph_.beginFrame();
+    graph_.resetHistories();
+    denoise(nano(), frameOf(c, 0));
+    std::vector<Layer> result;
+    for (const gpu::RecordedPass& pass : graph_.passes()) {
+        if (pass.shader.find("nano_convolve") == std::string::npos &&
+            pass.shader.find("_matrix") == std::string::npos)
+            continue;
+        Layer layer{.pass = pass.name, .channels = {}};
+        for (const uint32_t word : graph_.downloadUint(device(), graph_.imagesWrittenBy(pass.name).at(0)))
+            for (const uint32_t half : {word & 0xffffu, word >> 16u})
+                layer.channels.push_back(halfToFloat(static_cast<uint16_t>(half)));
+        result.push_back(std::move(layer));
+    }
+    return result;
+}
+
+/// Layer by layer: sums are in another order, which may round a channel to another half.
+TEST_F(NanoTest, MatricesComputeTheSameChannels) {
+    if (!hasMatrices()) GTEST_SKIP() << withoutMatrices();
+    constexpr double rounding = 2e-3;
+    for (const Case& c : {Case{.columns = 83, .rows = 50}, Case{.columns = 5, .rows = 3},
+                          Case{.columns = 17, .rows = 300}, Case{.columns = 300, .rows = 150}}) {
+        matrices_ = false;
+        const std::vector<Layer> expected = layers(c);
+        matrices_ = true;
+        const std::vector<Layer> is = layers(c);
+        ASSERT_EQ(is.size(), expected.size());
+        for (size_t i = 0; i < is.size(); ++i) {
+            SCOPED_TRACE(is[i].pass + ", " + std::to_string(c.columns) + "x" + std::to_string(c.rows));
+            ASSERT_EQ(is[i].channels.size(), expected[i].channels.size());
+            Rms errors, channels;
+            for (size_t k = 0; k < is[i].channels.size(); ++k) {
+                errors.add(dvec3(double{is[i].channels[k]} - double{expected[i].channels[k]}, 0.0, 0.0));
+                channels.add(dvec3(expected[i].channels[k], 0.0, 0.0));
+            }
+            EXPECT_LE(errors.get(), rounding * channels.get());
+        }
     }
 }
 

@@ -24,7 +24,7 @@ using Record = DenoiserOutput (*)(gpu::FrameGraph&, const DenoiserInput&, const 
 
 /// The names of the passes of a frame of foreign images, in their order.
 std::vector<std::string> passesOf(gpu::FrameGraph& graph, const FilterSettings& settings,
-                                  bool reasons = false, Record record = svgf::record) {
+                                  bool reasons = false, Record record = svgf::record, bool matrices = false) {
     graph.beginFrame();
     const auto import = [&](const char* name) {
         return graph.import(name, gpu::Format::RGBA32Float, extent, nowhere);
@@ -40,6 +40,7 @@ std::vector<std::string> passesOf(gpu::FrameGraph& graph, const FilterSettings& 
     params.height = extent.height;
     DenoiserInput input = ingest(graph, images, params, {.twoSignals = settings.svgf.separate});
     input.reasons.wanted = reasons;
+    input.matrices = matrices;
     record(graph, input, settings);
     std::vector<std::string> names;
     for (const gpu::RecordedPass& pass : graph.passes()) names.push_back(pass.name);
@@ -82,6 +83,7 @@ TEST(RecordingTest, NanoIsSvgfWithMorePassesBeforeTheLast) {
     EXPECT_GT(names.size(), others.size() + 10);
     EXPECT_EQ(others, passesOf(graph, {}));
     EXPECT_EQ(names.back(), "svgf/compose");
+    EXPECT_EQ(passesOf(graph, {}, false, nano::record, true), names);
 }
 
 TEST(RecordingTest, SignalsAreWrittenWhereTheyAreWanted) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "denoise/methods/methods.h"
+#include "denoise/methods/nano/nano_matrices.h"
 #include "denoise/methods/nano/nano_network.h"
 #include "nano_convolve.comp.h"
 #include "nano_features.comp.h"
@@ -130,13 +131,16 @@ class Nano {
                                         .coarserGroups = layer.coarser,
                                         .outputGroups = layer.outputs,
                                         .weights = layer.weights};
+        if (!coarser) coarser = inputs;
+        if (input_.matrices) {
+            convolveByMatrices(graph_, {pass, level, taps, params, inputs, coarser, weights_, outputs});
+            return outputs;
+        }
         graph_.dispatch(
             {.pass = pass,
              .shader = shaders::nano_convolve_comp,
-             .bindings = {{"inputs", inputs},
-                          {"coarser", coarser ? coarser : inputs},
-                          {"weights", weights_},
-                          {"outputs", outputs}},
+             .bindings =
+                 {{"inputs", inputs}, {"coarser", coarser}, {"weights", weights_}, {"outputs", outputs}},
              .params = gpu::paramsOf(params),
              .constants = {{"TAPS", taps}},
              .extent = {(extent.width + NANO_PIXELS - 1) / NANO_PIXELS, extent.height * layer.outputs}});

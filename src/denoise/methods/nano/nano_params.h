@@ -15,6 +15,8 @@ LIMPID_CONST int NANO_LEVELS = 5;     // resolutions; each halves the one before
 LIMPID_CONST int NANO_FEATURES = 24;  // that the network sees of a pixel
 LIMPID_CONST int NANO_GROUP = 8;      // channels in a texel of a buffer, as halves
 LIMPID_CONST int NANO_PIXELS = 4;     // in a row, that one invocation of a convolution computes
+// A workgroup of a convolution on cooperative matrices: columns of pixels, and subgroups.
+LIMPID_CONST uint NANO_COLUMNS = 16u, NANO_SUBGROUPS = 8u, NANO_SMALL_SUBGROUPS = 4u;
 // The filter: a pixel has (2 reach + 1)^2 taps of its level and NANO_COARSER_TAPS of the next coarser one. A
 // signal's logits are those of the taps; at the finest level those of SVGF's share and of the past's, where
 // that of the filter's share is 0; and, but at the coarsest level, that of the pixel in the next coarser

@@ -1,0 +1,92 @@
+#include "denoise/methods/nano/nano_matrices.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "nano_around_matrix.comp.h"
+#include "nano_around_matrix_small.comp.h"
+#include "nano_within_matrix.comp.h"
+#include "nano_within_matrix_small.comp.h"
+
+namespace limpid::denoise {
+namespace {
+
+/// A workgroup's share of a layer, with the names of nano_matrix.glsl. Several workgroups share the outputs
+/// of a pixel if `tiles` is less than their number. All need at most 48 KB of shared memory.
+struct Share {
+    uint32_t tiles, rows, loops = 1;
+    bool small = false;
+};
+
+/// Those that were fastest on an H200 at 1920x1080, by level.
+constexpr std::array<Share, NANO_LEVELS> aroundShares{{{.tiles = 1, .rows = 4, .loops = 4},
+                                                       {.tiles = 2, .rows = 4},
+                                                       {.tiles = 3, .rows = 3},
+                                                       {.tiles = 2, .rows = 2, .small = true},
+                                                       {.tiles = 1, .rows = 1}}};
+constexpr std::array<Share, NANO_LEVELS> pointShares{{{.tiles = 1, .rows = 8, .small = true},
+                                                      {.tiles = 2, .rows = 8, .small = true},
+                                                      {.tiles = 3, .rows = 2},
+                                                      {.tiles = 4, .rows = 1},
+                                                      {}}};
+constexpr std::array<Share, NANO_LEVELS> halveShares{{{},
+                                                      {.tiles = 2, .rows = 8, .small = true},
+                                                      {.tiles = 3, .rows = 2},
+                                                      {.tiles = 2, .rows = 1},
+                                                      {.tiles = 2, .rows = 1}}};
+
+constexpr uint32_t subgroupSize = 32;  // see DeviceInfo::cooperativeMatrices
+
+uint32_t divideUp(uint32_t a, uint32_t b) {
+    return (a + b - 1) / b;
+}
+
+gpu::Extent threadsOf(const NanoConvolveParams& params, const Share& share) {
+    const uint32_t subgroups = share.small ? NANO_SMALL_SUBGROUPS : NANO_SUBGROUPS;
+    const uint32_t blocks = divideUp(params.height, subgroups * share.rows * share.loops);
+    return {divideUp(params.width, NANO_COLUMNS) * subgroups * subgroupSize,
+            blocks * (params.outputGroups / 2 / share.tiles)};
+}
+
+void around(gpu::FrameGraph& graph, const NanoConvolution& c) {
+    const Share& share = aroundShares[c.level];
+    graph.dispatch(
+        {.pass = c.pass,
+         .shader = share.small ? shaders::nano_around_matrix_small_comp : shaders::nano_around_matrix_comp,
+         .bindings = {{"inputs", c.inputs}, {"weights", c.weights}, {"outputs", c.outputs}},
+         .params = gpu::paramsOf(c.params),
+         .constants = {{"TILES", share.tiles},
+                       {"ROWS", share.rows},
+                       {"LOOPS", share.loops},
+                       {"SLABS", c.params.groups / 2}},
+         .extent = threadsOf(c.params, share)});
+}
+
+void within(gpu::FrameGraph& graph, const NanoConvolution& c) {
+    const bool halves = c.taps == NANO_HALVE;
+    const Share& share = (halves ? halveShares : pointShares)[c.level];
+    const uint32_t groups = halves ? 4 * c.params.groups : c.params.groups + c.params.coarserGroups;
+    graph.dispatch(
+        {.pass = c.pass,
+         .shader = share.small ? shaders::nano_within_matrix_small_comp : shaders::nano_within_matrix_comp,
+         .bindings =
+             {{"inputs", c.inputs}, {"coarser", c.coarser}, {"weights", c.weights}, {"outputs", c.outputs}},
+         .params = gpu::paramsOf(c.params),
+         .constants = {{"TILES", share.tiles},
+                       {"ROWS", share.rows},
+                       {"LOOPS", share.loops},
+                       {"SLABS", groups / 2},
+                       {"OWN_SLABS", c.params.groups / 2},
+                       {"HALVES", halves ? 1u : 0u}},
+         .extent = threadsOf(c.params, share)});
+}
+
+}  // namespace
+
+void convolveByMatrices(gpu::FrameGraph& graph, const NanoConvolution& convolution) {
+    if (convolution.taps == NANO_AROUND) return around(graph, convolution);
+    within(graph, convolution);
+}
+
+}  // namespace limpid::denoise
