@@ -370,23 +370,6 @@ Lights filteredLight(const Padded& padded, const NanoSignal& signal, const std::
     return result;
 }
 
-/// What the filter's own light is mixed to.
-struct Mixture {
-    dvec3 light, spread;
-    double share;  ///< of the filter's own light
-};
-
-/// `shares`: the logits of SVGF's share and of the past's.
-Mixture mixed(const dvec3& own, const NanoSignal& signal, size_t p, const double* shares) {
-    const dvec3 svgf(signal.filtered[p]), past = signal.past.empty() ? dvec3(0.0) : signal.past[p];
-    const double ofSvgf = std::exp(std::clamp(shares[0], -30.0, 30.0));
-    const double ofPast = past == dvec3(0.0) ? 0.0 : std::exp(std::clamp(shares[1], -30.0, 30.0));
-    const double total = 1.0 + ofSvgf + ofPast;
-    const dvec3 light = (own + ofSvgf * svgf + ofPast * past) / total;
-    const dvec3 spread = (ofSvgf * glm::abs(svgf - light) + ofPast * glm::abs(past - light)) / total;
-    return {.light = light, .spread = spread, .share = 1.0 / total};
-}
-
 }  // namespace
 
 std::array<NanoLight, 2> nanoFilter(const NanoFrame& frame, std::span<const std::byte> weights) {
@@ -398,12 +381,13 @@ std::array<NanoLight, 2> nanoFilter(const NanoFrame& frame, std::span<const std:
         const Lights own = filteredLight(padded, signal, logits, s);
         for (size_t p = 0; p < signal.filtered.size(); ++p) {
             const auto x = static_cast<int64_t>(p % frame.width), y = static_cast<int64_t>(p / frame.width);
-            const Mixture mixture =
-                mixed(own.nearest(x, y).light, signal, p, logitsOf(logits[0], s, x, y) + tapsAt(0));
-            const dvec3 svgf(signal.filtered[p]), moves = frame.strength * (mixture.light - svgf);
+            const double* const shares = logitsOf(logits[0], s, x, y) + tapsAt(0);
+            const double share = frame.strength / (1.0 + std::exp(shares[1] - shares[0]));
+            const Texel& texel = own.nearest(x, y);
+            const dvec3 svgf(signal.filtered[p]), moves = share * (texel.light - svgf);
             result[s].light.push_back(padded.sees(x, y) ? svgf + moves : svgf);
-            const dvec3 ofOwn = mixture.share * own.nearest(x, y).spread;
-            result[s].spread.push_back(frame.strength * (mixture.spread + ofOwn));
+            // The share has two logits.
+            result[s].spread.push_back(2.0 * glm::abs(moves) + share * texel.spread);
         }
     }
     return result;

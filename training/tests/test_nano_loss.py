@@ -110,7 +110,7 @@ class EvaluateTest(unittest.TestCase):
                   for clip in range(2) for number in (1, 3)]
         net = network.Net(network.Shape((8, 8), (0, 0), (3, 3)))
         with torch.no_grad():
-            net.heads[0].bias.view(2, -1)[:, net.kernel_logits(0)] = 1e4  # SVGF's share is 1
+            net.heads[0].bias.view(2, -1)[:, net.kernel_logits(0) + 1] = 1e4  # SVGF's share is 1
         results = evaluate.evaluate(net, stored)
         self.assertEqual([(result["clip"], result["frame"]) for result in results],
                          [("000000", 1), ("000000", 3), ("000001", 1), ("000001", 3)])

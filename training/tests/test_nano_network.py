@@ -45,9 +45,8 @@ def softmax_mean(taps):
     return sum(weight * light for weight, light in taps) / total if taps else 0.0
 
 
-def naive(logits, accumulated, svgf, past, seen, kernel):
-    """network.apply() with two levels, number by number. For one signal and one channel: lists of lists. `past` is None
-    where there is none."""
+def naive(logits, accumulated, svgf, seen, kernel):
+    """network.apply() with two levels, number by number. For one signal and one channel: lists of lists."""
     rows, columns = len(seen), len(seen[0])
     inside = lambda y, x, rows, columns: (min(max(y, 0), rows - 1), min(max(x, 0), columns - 1))
     fine, coarse = logits
@@ -73,9 +72,8 @@ def naive(logits, accumulated, svgf, past, seen, kernel):
             at = inside(y // 2 - 1 + y % 2 + k // 2, x // 2 - 1 + x % 2 + k % 2, rows // 2, columns // 2)
             taps.append((fine[kernel * kernel + k][y][x], filtered[at], seen_filtered[at]))
         own = softmax_mean(taps)
-        before = past[y][x]
-        result[y][x] = softmax_mean([(0.0, own, True), (min(fine[-3][y][x], 30), svgf[y][x], True),
-                                     (min(fine[-2][y][x], 30), before, before is not None)])
+        share = 1 / (1 + math.exp(fine[-2][y][x] - fine[-3][y][x]))
+        result[y][x] = svgf[y][x] + share * (own - svgf[y][x])
     return result
 
 
@@ -88,18 +86,15 @@ class ApplyTest(unittest.TestCase):
         rows, columns = 8, 10
         logits = [3 * torch.randn(1, 2 * net.logits(i), rows >> i, columns >> i, dtype=torch.float64) for i in (0, 1)]
         logits[0][0, -1, 2, 2] = 20.0  # beyond the limit
-        logits[0][0, -2, 3, 3] = 40.0
-        accumulated, svgf, past = torch.rand(3, 1, 2, 3, rows, columns, dtype=torch.float64)
-        past *= torch.rand(1, 2, 1, rows, columns) < 0.7
+        accumulated, svgf = torch.rand(2, 1, 2, 3, rows, columns, dtype=torch.float64)
         seen = (torch.rand(1, 1, rows, columns) < 0.6).double()
         seen[0, 0, :4, :4] = 0.0
-        result = network.apply(net, logits, accumulated, svgf, past, seen).light
+        result = network.apply(net, logits, accumulated, svgf, seen).light
         flags = (seen[0, 0] > 0).tolist()
         for signal, channel in itertools.product(range(2), range(3)):
             of_signal = [each[0].chunk(2)[signal].tolist() for each in logits]
-            before = [[value or None for value in row] for row in past[0, signal, channel].tolist()]
             expected = naive(of_signal, accumulated[0, signal, channel].tolist(), svgf[0, signal, channel].tolist(),
-                             before, flags, 5)
+                             flags, 5)
             self.assertTrue(torch.allclose(result[0, signal, channel], torch.tensor(expected, dtype=torch.float64),
                                            atol=1e-9))
 
@@ -115,7 +110,7 @@ class ApplyTest(unittest.TestCase):
         net = network.Net()
         light = torch.full((1, 2, 3, 32, 32), 0.25)
         logits = [4 * torch.randn(1, 2 * net.logits(i), 32 >> i, 32 >> i) for i in range(5)]
-        result = network.apply(net, logits, light, light, light, torch.ones(1, 1, 32, 32))
+        result = network.apply(net, logits, light, light, torch.ones(1, 1, 32, 32))
         self.assertTrue(torch.allclose(result.light, light, atol=1e-6))
 
     def test_the_gradient_reaches_every_weight(self):
@@ -137,9 +132,8 @@ class NetTest(unittest.TestCase):
         self.assertEqual(sum(weight.numel() for weight in net.parameters()), 328710)
 
     def test_begins_with_svgf(self):
-        result = network.denoise(network.Net(), clips.Frame(nano_clips.make_batch()))
-        for share in result.share, result.past, result.share + result.past:
-            self.assertTrue(((share >= 0) & (share < 0.4)).all())
+        share = network.denoise(network.Net(), clips.Frame(nano_clips.make_batch())).share
+        self.assertTrue(((share > 0.15) & (share < 0.4)).all())
 
     def test_its_shape_is_known_from_its_weights(self):
         for shape in network.SHIPPED, SMALL, network.Shape((8, 8, 24), (2, 0, 1), (7, 5, 3)):
@@ -168,8 +162,7 @@ class NetTest(unittest.TestCase):
 
         with torch.no_grad():
             logits = net(wider(features.of_frame(frame)))
-            images = frame.accumulated, frame.filtered, frame.past, frame.seen
-            expected = network.apply(net, logits, *map(wider, images))
+            expected = network.apply(net, logits, wider(frame.accumulated), wider(frame.filtered), wider(frame.seen))
             self.assertTrue(torch.equal(network.denoise(net, frame).light, expected.light[..., :7]))
 
 

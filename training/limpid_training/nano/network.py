@@ -2,7 +2,7 @@
 
 The network works on several levels: the picture, and pictures of half, a quarter ... of its size. At each level it
 predicts how a pixel's light is averaged from the pixels around and from the filtered coarser level, and at the finest
-level also the shares of that, of SVGF's result, and of the frame before in the light."""
+level also what share of SVGF's result to replace by that."""
 
 import collections
 import contextlib
@@ -31,12 +31,8 @@ LEAST_LOGIT = -60
 #: Standard deviation of the last layers' weights at the beginning: all pixels around then count almost alike.
 FIRST_SPREAD = 0.02
 
-#: The logits of SVGF's result and of the past at the beginning; that of the filter's own result is 0. Without a past,
-#: SVGF's share is e / (1 + e) = 0.73.
-FIRST_SVGF, FIRST_PAST = 1.0, -1.0
-
-#: The logits of shares are limited to as much, in both directions.
-LARGEST_SHARE_LOGIT = 30
+#: The logit of SVGF's result at the beginning, where the filter's own is about 0: SVGF's share is e / (1 + e) = 0.73.
+FIRST_SVGF = 1.0
 
 #: Level by level, from the finest on: channels, convolutions of 3x3 on the way down, width of the kernels in pixels.
 Shape = collections.namedtuple("Shape", ("widths", "depths", "kernels"))
@@ -44,9 +40,9 @@ Shape = collections.namedtuple("Shape", ("widths", "depths", "kernels"))
 #: The only shape that Limpid computes.
 SHIPPED = Shape((16, 32, 48, 64, 64), (0, 1, 2, 2, 2), (5, 3, 3, 3, 3))
 
-#: What apply() computes: light (batch, signals, 3, rows, columns) mixed from its own, SVGF's, and that of the frame
-#: before; its own light; and the shares of its own and of the past (batch, signals, 1, rows, columns).
-Filtered = collections.namedtuple("Filtered", ("light", "own", "share", "past"))
+#: What apply() computes: light (batch, signals, 3, rows, columns) mixed from SVGF's and its own, its own light, and
+#: the share of that (batch, signals, 1, rows, columns).
+Filtered = collections.namedtuple("Filtered", ("light", "own", "share"))
 
 
 def convolution(inputs, outputs, width):
@@ -59,8 +55,8 @@ class Net(nn.Module):
 
     The outputs are those of the first signal, then those of the second. A signal's logits are, in this order: one for
     each pixel of the kernel, row by row; at all but the coarsest level COARSE_TAPS for the coarser level's pixels; at
-    the finest level one for the share of SVGF's result, and one for that of the frame before, where that of the
-    filter's own result is 0; at all but the coarsest level the logarithm of the pixel's weight in the mean that becomes the coarser level's light."""
+    the finest level one for the filter's own result, and one for SVGF's; at all but the coarsest level the logarithm of
+    the pixel's weight in the mean that becomes the coarser level's light."""
 
     def __init__(self, shape=SHIPPED):
         super().__init__()
@@ -81,8 +77,7 @@ class Net(nn.Module):
         nn.init.normal_(head.weight, std=FIRST_SPREAD)
         if level == 0:
             with torch.no_grad():
-                place = self.kernel_logits(0)
-                head.bias.view(SIGNALS, -1)[:, place : place + 2] = torch.tensor([FIRST_SVGF, FIRST_PAST])
+                head.bias.view(SIGNALS, -1)[:, self.kernel_logits(0) + 1] = FIRST_SVGF
         return head
 
     @property
@@ -194,20 +189,9 @@ def softmax(logits, seen):
     return weights / weights.sum(2, keepdim=True).clamp(min=1e-30)
 
 
-def mixed(own, svgf, past, logits):
-    """Returns the light that is mixed from these three, and the shares of the first and the last. `logits`: of the
-    second and of the third (batch, signals, 2, rows, columns); that of the first is 0. A past that is black counts as
-    none, as where a surface has just appeared."""
-    others = torch.exp(logits.clamp(-LARGEST_SHARE_LOGIT, LARGEST_SHARE_LOGIT))
-    of_svgf, of_past = others[:, :, :1], others[:, :, 1:2] * (past != 0).any(2, keepdim=True)
-    total = 1 + of_svgf + of_past
-    return (own + of_svgf * svgf + of_past * past) / total, 1 / total, of_past / total
-
-
-def apply(net, logits, accumulated, svgf, past, seen):
+def apply(net, logits, accumulated, svgf, seen):
     """Applies the weights that Net has predicted. `accumulated` and `svgf` are light (batch, signals, 3, rows,
-    columns), before and after SVGF's filter; `past` is the light of the frame before; `seen` (batch, 1, rows, columns)
-    is 1 where something is seen, else 0.
+    columns), before and after SVGF's filter; `seen` (batch, 1, rows, columns) is 1 where something is seen, else 0.
 
     Filtered light counts as seen if any of its taps is. So a pixel of a coarser level that sees nothing itself can
     still give light to pixels of the finer level: that of its neighbours."""
@@ -227,9 +211,10 @@ def apply(net, logits, accumulated, svgf, past, seen):
         weights = softmax(each[:, :, : taps.shape[2]], taps[:, None, -1])
         own = (taps[:, :-1].view(*light.shape[:3], *taps.shape[2:]) * weights.unsqueeze(2)).sum(3)
         own_seen = taps[:, -1:].amax(2)
-    place = net.kernel_logits(0)
-    light, share, of_past = mixed(own, svgf, past, levels[0][2][:, :, place : place + 2])
-    return Filtered(light, own, share, of_past)
+    finest, place = levels[0][2], net.kernel_logits(0)
+    of_own, of_svgf = finest[:, :, place], finest[:, :, place + 1]
+    share = torch.sigmoid(of_own - of_svgf).unsqueeze(2)
+    return Filtered(svgf + share * (own - svgf), own, share)
 
 
 def half_precision(device):
@@ -254,6 +239,5 @@ def denoise(net, frame, predictor=None):
     x = padded(features.of_frame(frame), net.multiple)
     with half_precision(x.device):
         logits = (predictor or net)(x)
-    images = (padded(image, net.multiple)
-              for image in (frame.accumulated, frame.filtered, frame.past, frame.seen))
+    images = (padded(image, net.multiple) for image in (frame.accumulated, frame.filtered, frame.seen))
     return Filtered(*(image[..., :rows, :columns] for image in apply(net, logits, *images)))

@@ -199,7 +199,7 @@ class Trainer:
             result = result + CHANGE_WEIGHT * judge.change(picture)
         with torch.no_grad():
             self.sums += torch.stack([judge.error(picture), judge.error(frame.svgf), judge.error(own),
-                                      filtered.share.mean(), filtered.past.mean(), result])
+                                      filtered.share.mean(), result])
         return result
 
     def learn(self):
@@ -218,19 +218,18 @@ class Trainer:
         self.counted += 1
 
     def clear_sums(self):
-        self.sums, self.counted = torch.zeros(6, device=self.workers.device), 0
+        self.sums, self.counted = torch.zeros(5, device=self.workers.device), 0
 
     def report(self):
         if not self.counted:
             return
-        picture, svgf, own, share, past, mean_loss = (self.sums / self.counted).tolist()
+        picture, svgf, own, share, mean_loss = (self.sums / self.counted).tolist()
         least = max(svgf, 1e-9)  # the estimate of an error that is about 0 can be negative
         seconds = self.elapsed()
         self.reports.append({"step": self.step, "seconds": seconds, "training": picture / least,
-                             "own": own / least, "share": share, "past": past, "loss": mean_loss, "rate": self.rate()})
+                             "own": own / least, "share": share, "loss": mean_loss, "rate": self.rate()})
         print(f"step {self.step}, {seconds:.0f} s: error over SVGF's {picture / least:.4f}, of the filter alone "
-              f"{own / least:.4f}, its share {share:.2f}, the past's {past:.2f}, loss {mean_loss:.3e}, "
-              f"rate {self.rate():.2e}", flush=True)
+              f"{own / least:.4f}, its share {share:.2f}, loss {mean_loss:.3e}, rate {self.rate():.2e}", flush=True)
         self.clear_sums()
 
     def validate(self):

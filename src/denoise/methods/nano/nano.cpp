@@ -211,14 +211,11 @@ class Nano {
                                       {"resultA", results[0]},
                                       {"resultB", results[1]},
                                       {"stableA", a.stable},
-                                      {"stableB", stableToo},
-                                      {"pastA", a.past},
-                                      {"pastB", b.past}},
+                                      {"stableB", stableToo}},
                          .params = gpu::paramsOf(params),
                          .constants = {{"COARSER", 1u},
                                        {"STABILISE", replacesStable() ? 1u : 0u},
-                                       {"TWO_SIGNALS", twoSignals() ? 1u : 0u},
-                                       {"HAS_PAST", svgf_.stabilised ? 1u : 0u}},
+                                       {"TWO_SIGNALS", twoSignals() ? 1u : 0u}},
                          .extent = picture_});
         return results;
     }

@@ -18,13 +18,11 @@ LIMPID_CONST int NANO_PIXELS = 4;     // in a row, that one invocation of a conv
 // A workgroup of a convolution on cooperative matrices: columns of pixels, and subgroups.
 LIMPID_CONST uint NANO_COLUMNS = 16u, NANO_SUBGROUPS = 8u, NANO_SMALL_SUBGROUPS = 4u;
 // The filter: a pixel has (2 reach + 1)^2 taps of its level and NANO_COARSER_TAPS of the next coarser one. A
-// signal's logits are those of the taps; at the finest level those of SVGF's share and of the past's, where
-// that of the filter's share is 0; and, but at the coarsest level, that of the pixel in the next coarser
-// level. They fill so many groups.
+// signal's logits are those of the taps; at the finest level those of the filter's share and of SVGF's; and,
+// but at the coarsest level, that of the pixel in the next coarser level. They fill so many groups.
 LIMPID_CONST int NANO_REACH = 1, NANO_FINEST_REACH = 2;
 LIMPID_CONST int NANO_COARSER_TAPS = 4;
 LIMPID_CONST int NANO_LOGIT_GROUPS = 2, NANO_FINEST_LOGIT_GROUPS = 4;
-LIMPID_CONST float NANO_LARGEST_SHARE_LOGIT = 30.0;  // in both directions
 // Taps of a convolution.
 LIMPID_CONST uint NANO_POINT = 0u;   // 1x1: of the same pixel, then of the pixel of the next coarser level
 LIMPID_CONST uint NANO_HALVE = 1u;   // 2x2: of the four pixels of the next finer level

@@ -1,6 +1,5 @@
 // Filters one level: a mean of the pixels around, and of the four nearest pixels of the filtered coarser level, with
-// the network's weights. With LIMPID_NANO_FINEST the finest level, which is then mixed with SVGF's result and with the
-// light of the frame before.
+// the network's weights. With LIMPID_NANO_FINEST the finest level, which is then mixed with SVGF's result.
 #include "denoise/methods/nano/shaders/nano_storage.glsl"
 
 #ifdef LIMPID_NANO_FINEST
@@ -14,7 +13,6 @@ layout(constant_id = 0) const bool COARSER = true;  // there is a coarser level
 #ifdef LIMPID_NANO_FINEST
 layout(constant_id = 1) const bool STABILISE = true;  // the next frame is stabilised by the result
 layout(constant_id = 2) const bool TWO_SIGNALS = true;
-layout(constant_id = 3) const bool HAS_PAST = true;
 #endif
 
 layout(set = 0, binding = 0, scalar) uniform Params {
@@ -31,8 +29,6 @@ WRITE_HALF4(7, resultA);
 WRITE_HALF4(8, resultB);
 WRITE_UINT1(9, stableA);  // svgf_stable.glsl
 WRITE_UINT1(10, stableB);
-READ_UINT1(11, pastA);  // the light of the frame before, where it is now
-READ_UINT1(12, pastB);
 #else
 WRITE_TEXELS(5, result);
 #endif
@@ -89,14 +85,10 @@ LightPair filtered(ivec2 at, Logits a, Logits b) {
 }
 
 #ifdef LIMPID_NANO_FINEST
-/// `svgf`: its light, and in the fourth component its deviation; negative: nothing is seen. Where a surface has just
-/// appeared, the light before is black, which counts as none.
-vec4 mixed(vec4 svgf, vec3 own, vec3 past, Logits logits) {
-    const vec2 most = vec2(NANO_LARGEST_SHARE_LOGIT), shares = vec2(logit(logits, ALL_TAPS), logit(logits, ALL_TAPS + 1));
-    vec2 others = exp(clamp(shares, -most, most));
-    if (past == vec3(0.0)) others.y = 0.0;
-    const vec3 light = (own + others.x * svgf.rgb + others.y * past) / (1.0 + others.x + others.y);
-    return svgf.a < 0.0 ? svgf : vec4(mix(svgf.rgb, light, params.strength), svgf.a);
+/// `svgf`: its light, and in the fourth component its deviation; negative: nothing is seen.
+vec4 mixed(vec4 svgf, vec3 own, Logits logits) {
+    const float share = params.strength / (1.0 + exp(logit(logits, ALL_TAPS + 1) - logit(logits, ALL_TAPS)));
+    return svgf.a < 0.0 ? svgf : vec4(mix(svgf.rgb, own, share), svgf.a);
 }
 #endif
 
@@ -107,10 +99,8 @@ void main() {
     const Logits a = logitsOfSignal(pixel, 0u), b = logitsOfSignal(pixel, 1u);
     const LightPair own = filtered(at, a, b);
 #ifdef LIMPID_NANO_FINEST
-    const vec3 pastDiffuse = HAS_PAST ? unpackedStable(LOAD_UINT1(pastA, at)) : vec3(0.0);
-    const vec3 pastSpecular = HAS_PAST && TWO_SIGNALS ? unpackedStable(LOAD_UINT1(pastB, at)) : vec3(0.0);
-    const vec4 diffuse = mixed(LOAD_HALF4(filteredA, at), own.diffuse, pastDiffuse, a);
-    const vec4 specular = mixed(LOAD_HALF4(filteredB, at), own.specular, pastSpecular, b);
+    const vec4 diffuse = mixed(LOAD_HALF4(filteredA, at), own.diffuse, a);
+    const vec4 specular = mixed(LOAD_HALF4(filteredB, at), own.specular, b);
     STORE_HALF4(resultA, at, diffuse);
     STORE_HALF4(resultB, at, specular);
     if (STABILISE) STORE_UINT1(stableA, at, packedStable(diffuse.rgb));
