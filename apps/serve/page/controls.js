@@ -32,11 +32,11 @@ function checkbox({id, describedBy, change}) {
 function select({id, describedBy, change}, choices) {
   const input = make('select', {id, 'aria-describedby': describedBy});
   let values = [];
-  const setChoices = list => { // [[value, text], ...]
+  const setChoices = list => { // [[value, text, help], ...]; help may be missing
     if (JSON.stringify(list) === JSON.stringify(values)) return;
     values = list;
     const chosen = input.selectedIndex;
-    input.replaceChildren(...list.map(([, text]) => make('option', {textContent: text})));
+    input.replaceChildren(...list.map(([, text, help]) => make('option', {textContent: text, title: help ?? ''})));
     input.selectedIndex = chosen;
   };
   setChoices(choices);

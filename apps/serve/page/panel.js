@@ -65,10 +65,10 @@ export class Panel {
     const help = field.help + (field.unit ? ` [${field.unit}]` : '');
     const head = make('div', {className: 'head'}, label,
                       field.unit ? make('span', {className: 'unit', textContent: field.unit}) : null, reset);
-    const element = make('div', {className: `field kind-${field.kind}`}, head, control.element,
-                         make('p', {className: 'help', id: id + '-help', textContent: help}));
+    const explained = make('p', {className: 'help', id: id + '-help', textContent: help});
+    const element = make('div', {className: `field kind-${field.kind}`}, head, control.element, explained);
     element.dataset.key = field.key;
-    this.#rows.set(field.key, {element, control, reset, field,
+    this.#rows.set(field.key, {element, control, reset, field, help, explained,
                                text: `${field.key} ${field.section} ${field.label} ${field.help}`.toLowerCase()});
     return element;
   }
@@ -89,7 +89,8 @@ export class Panel {
       case 'bool': return controls.checkbox(options);
       case 'int':
       case 'float': return controls.slider(options);
-      case 'choice': return controls.select(options, field.choices.map(name => [name, name]));
+      case 'choice': return controls.select(options, 
+                                                   field.choices.map((name, i) => [name, name, field.choice_help?.[i]]));
       case 'index': return controls.select(options, []);
       case 'vector': return controls.vector(options);
       case 'lights': return new LightDesk(this.store, this.ask);
@@ -105,8 +106,10 @@ export class Panel {
     this.arrange();
   }
 
-  showRow(key, {element, control, reset, field}) {
+  showRow(key, {element, control, reset, field, help, explained}) {
     const value = this.store.value(key), {facts} = this.store;
+    const ofChoice = field.choice_help?.[field.choices.indexOf(value)];
+    if (ofChoice) explained.textContent = `${help}. ${value}: ${ofChoice}`;
     if (field.kind === 'index') control.setChoices((facts[field.choices[0]] ?? []).map((name, i) => [i, name]));
     if (key === 'pass') this.showPasses(control, value);
     if (value !== undefined) control.show(value);

@@ -169,6 +169,7 @@ json describe(const Field& field) {
                   {"smallest", field.slider.smallest}}},
                 {"choices", field.choices},
                 {"default", field.defaultValue}};
+    if (!field.choiceHelp.empty()) result["choice_help"] = field.choiceHelp;
     if (!field.denoisers.empty()) result["denoisers"] = field.denoisers;
     return result;
 }

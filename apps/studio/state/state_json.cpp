@@ -235,9 +235,12 @@ Entry keptSettingsEntry() {
 }
 
 Entry integratorEntry() {
-    std::vector<std::string> names;
-    for (const Integrator integrator : integrators()) names.emplace_back(nameOf(integrator));
-    return choice(
+    std::vector<std::string> names, help;
+    for (const Integrator integrator : integrators()) {
+        names.emplace_back(nameOf(integrator));
+        help.emplace_back(helpOf(integrator));
+    }
+    Entry entry = choice(
         {"integrator", "method", "integrator", "What is computed"}, names,
         [](const State& s) {
             return static_cast<size_t>(std::ranges::find(integrators(), s.render.pipeline.integrator) -
@@ -251,12 +254,18 @@ Entry integratorEntry() {
             if (!s.isPreview()) s.pipelineBefore = s.render.pipeline;
             s.render.pipeline = pipeline;
         });
+    entry.field.choiceHelp = std::move(help);
+    return entry;
 }
 
 Entry denoiserEntry() {
-    std::vector<std::string> names;
-    for (const std::string_view name : denoiserNames()) names.emplace_back(name);
-    return choice(
+    std::vector<std::string> names, help;
+    for (const std::string_view name : denoiserNames()) {
+        names.emplace_back(name);
+        const denoise::Denoiser* const denoiser = parseDenoiser(names.back());
+        help.emplace_back(denoiser ? denoiser->help : "the picture as it is rendered");
+    }
+    Entry entry = choice(
         {"denoiser", "method", "denoiser", "How noise is removed"}, names,
         [names](const State& s) {
             return static_cast<size_t>(std::ranges::find(names, nameOf(s.render.pipeline.denoiser)) -
@@ -270,6 +279,8 @@ Entry denoiserEntry() {
             if (!s.isPreview()) s.pipelineBefore = s.render.pipeline;
             s.render.pipeline = pipeline;
         });
+    entry.field.choiceHelp = std::move(help);
+    return entry;
 }
 
 json jsonOf(const ParamValue& value) {

@@ -36,8 +36,9 @@ struct Field {
     double minimum = 0.0, maximum = 0.0;  ///< inclusive, of Int and Float
     SliderSpan slider;
     std::vector<std::string> choices;
-    std::vector<std::string> denoisers;  ///< those that it changes something for; empty: it needs none
-    nlohmann::json defaultValue;         ///< null: depends on the scene
+    std::vector<std::string> choiceHelp;  ///< a sentence for each of `choices`; empty: they need none
+    std::vector<std::string> denoisers;   ///< those that it changes something for; empty: it needs none
+    nlohmann::json defaultValue;          ///< null: depends on the scene
 };
 
 const std::vector<Field>& fields();

@@ -61,6 +61,15 @@ State stateWithLights() {
     return state;
 }
 
+TEST(StateJson, EachDenoiserAndIntegratorIsExplained) {
+    for (const Field& field : fields()) {
+        EXPECT_TRUE(field.choiceHelp.empty() || field.choiceHelp.size() == field.choices.size()) << field.key;
+        for (const std::string& help : field.choiceHelp) EXPECT_GT(help.size(), 10u) << field.key;
+    }
+    EXPECT_FALSE(findField("denoiser")->choiceHelp.empty());
+    EXPECT_FALSE(findField("integrator")->choiceHelp.empty());
+}
+
 TEST(StateJson, EveryFieldChangesAloneAndComesBack) {
     const State initial = stateWithLights();
     const json before = toJson(initial);

@@ -32,6 +32,14 @@ std::optional<double> slide(const char* name, const std::string& shown, const Sl
 
 }  // namespace
 
+void explain(const std::string& text) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(26.0f * ImGui::GetFontSize());
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
 void Controls::note(const std::string& name, const std::string& value) {
     const ImVec2 lower = ImGui::GetItemRectMin(), upper = ImGui::GetItemRectMax();
     note(name, value, lower.x, lower.y, upper.x, upper.y);
@@ -167,7 +175,8 @@ bool Controls::color(const char* name, vec3& value) {
     return true;
 }
 
-bool Controls::choice(const char* name, const std::vector<std::string>& choices, int& chosen) {
+bool Controls::choice(const char* name, const std::vector<std::string>& choices, int& chosen,
+                      const std::vector<std::string>& help) {
     const bool open = ImGui::BeginCombo(beginRow(name).c_str(), choices[static_cast<size_t>(chosen)].c_str(),
                                         ImGuiComboFlags_HeightLarge);
     note(name, choices[static_cast<size_t>(chosen)]);
@@ -182,6 +191,7 @@ bool Controls::choice(const char* name, const std::vector<std::string>& choices,
             changed = number != chosen;
             chosen = number;
         }
+        if (i < help.size() && ImGui::IsItemHovered()) explain(help[i]);
         ImGui::PopID();
         if (!appears) note(std::string(name) + "=" + choices[i]);
     }

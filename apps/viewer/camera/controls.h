@@ -23,6 +23,9 @@ struct DrawnControl {
           bottom = 0.0f;  ///< pixels of the window; outside it: scrolled away
 };
 
+/// A text beside the mouse.
+void explain(const std::string& text);
+
 /// Every function draws a control named `name` and returns whether the user changed it. Those for values are
 /// rows: the name on the left, the control on the right.
 class Controls {
@@ -52,8 +55,10 @@ class Controls {
     bool tree(const char* name);
     /// Hue and saturation of linear Rec. 709; the largest component stays as it is.
     bool color(const char* name, vec3& value);
-    /// `choices` are shown in a list that opens; `chosen` is one's number.
-    bool choice(const char* name, const std::vector<std::string>& choices, int& chosen);
+    /// `choices` are shown in a list that opens; `chosen` is one's number. `help`: empty, or a sentence for
+    /// each, shown while the mouse is over it.
+    bool choice(const char* name, const std::vector<std::string>& choices, int& chosen,
+                const std::vector<std::string>& help = {});
     /// The mouse is over the row that was drawn last, or over its name.
     bool rowHovered() const;
     /// Of whatever was drawn last.

@@ -72,7 +72,7 @@ void drawControl(const Drawing& with, const Field& field, json& value) {
         case Kind::Choice: {
             const auto found = std::ranges::find(field.choices, value.get<std::string>());
             auto chosen = static_cast<int>(found - field.choices.begin());
-            if (with.controls.choice(name, field.choices, chosen))
+            if (with.controls.choice(name, field.choices, chosen, field.choiceHelp))
                 value = field.choices[static_cast<size_t>(chosen)];
             return;
         }
@@ -110,13 +110,8 @@ bool drawDot(const Drawing& with, const Field& field) {
 std::string helpOf(const Field& field, const json& value) {
     std::string text = field.help;
     if (!field.unit.empty()) text += " [" + field.unit + "]";
-    if (field.key == "integrator")
-        text += "\n\n" + value.get<std::string>() + ": " +
-                std::string(limpid::helpOf(parsePipeline(value.get<std::string>(), "none").integrator));
-    if (field.key == "denoiser") {
-        if (const denoise::Denoiser* const denoiser = parseDenoiser(value.get<std::string>()))
-            text += "\n\n" + value.get<std::string>() + ": " + std::string(denoiser->help);
-    }
+    for (size_t i = 0; i < field.choiceHelp.size(); ++i)
+        if (value == field.choices[i]) text += "\n\n" + field.choices[i] + ": " + field.choiceHelp[i];
     const bool number = field.kind == Kind::Int || field.kind == Kind::Float;
     if (number)
         text += fmt::format("\n{:g} to {:g}; Ctrl and a click: type it", field.minimum, field.maximum);
@@ -124,14 +119,6 @@ std::string helpOf(const Field& field, const json& value) {
 }
 
 }  // namespace
-
-void explain(const std::string& text) {
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(26.0f * ImGui::GetFontSize());
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
-}
 
 void explainRow(const Drawing& with, const std::string& text) {
     if (with.controls.rowHovered() && !ImGui::IsAnyItemActive()) explain(text);

@@ -18,7 +18,7 @@ struct NanoSettings {
 namespace nano {
 using Settings = NanoSettings;
 inline constexpr std::string_view help =
-    "a trained network behind SVGF: predicts the weights of a filter on five resolutions";
+    "SVGF, and behind it a small trained network: cleaner and sharper, slower";
 inline constexpr std::array<std::string_view, 3> groups{"nano", "svgf", "taa"};
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = false;
