@@ -212,6 +212,9 @@ void inspectRayTracing(const InstanceFunctions& vk, PhysicalDevice& device,
                          .maxPrimitives = structure.maxPrimitiveCount};
 }
 
+/// What shaders with cooperative matrices may use.
+constexpr uint32_t matrixSharedBytes = 48 << 10;
+
 void inspectCooperativeMatrices(const InstanceFunctions& vk, PhysicalDevice& device,
                                 const std::set<std::string>& extensions) {
     if (!extensions.contains(VK_NV_COOPERATIVE_MATRIX_EXTENSION_NAME)) return;
@@ -226,7 +229,7 @@ void inspectCooperativeMatrices(const InstanceFunctions& vk, PhysicalDevice& dev
     // other shaders need device scope.
     if (!available.cooperativeMatrix.cooperativeMatrix || !available.v12.shaderFloat16 ||
         !available.v12.vulkanMemoryModel || !available.v12.vulkanMemoryModelDeviceScope ||
-        subgroup.subgroupSize != 32)
+        subgroup.subgroupSize != 32 || core.properties.limits.maxComputeSharedMemorySize < matrixSharedBytes)
         return;
     uint32_t count = 0;
     LIMPID_VK(vk.GetPhysicalDeviceCooperativeMatrixPropertiesNV(device.handle, &count, nullptr));

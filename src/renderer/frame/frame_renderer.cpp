@@ -1,10 +1,13 @@
 #include "renderer/frame/frame_renderer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <span>
 #include <utility>
 
+#include "base/error.h"
 #include "passes/sobol_points.h"
 
 namespace limpid {
@@ -124,8 +127,20 @@ void FrameRenderer::record(const LaunchSamples& taken) {
     if (display_) displayed_ = display_(graph_, images_);
 }
 
+/// Some methods keep more in a buffer than others do in images.
+void FrameRenderer::checkBuffers() const {
+    const uint64_t needed = graph_.largestBufferBytes(), most = device_.maxStorageBufferBytes();
+    if (needed > most)
+        throw UsageError(
+            fmt::format("{}x{} pixels are too many for the denoiser '{}' on {}: a buffer would take {} "
+                        "bytes, and the device allows {}",
+                        settings_.extent.width, settings_.extent.height, nameOf(settings_.pipeline.denoiser),
+                        device_.info().name, needed, most));
+}
+
 void FrameRenderer::launch(const LaunchSamples& taken) {
     record(taken);
+    checkBuffers();
     graph_.execute(device_);
     scene_.setLightDistancesStale(false);  // unless execute() throws Interrupted
     moment_.scene.reset();                 // the device keeps this state until the next frame

@@ -110,6 +110,8 @@ class FrameRenderer {
     void goTo(Moment moment);
     LaunchSamples nextSamples() const;
     void record(const LaunchSamples& taken);
+    /// Throws UsageError if the recorded frame has a buffer that the device cannot have.
+    void checkBuffers() const;
     void readIds();
 
     gpu::Device& device_;
