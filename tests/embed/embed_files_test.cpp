@@ -206,7 +206,13 @@ TEST_F(EmbedFilesTest, GivesThePicturesOfTheProgramBitForBit) {
     for (const Variant& variant :
          {oneSignal, twoSignals, otherParameters, atrous, temporal, nano, nanoOfOne}) {
         const Difference difference = differenceOf(variant);
-        EXPECT_EQ(difference.values, 0u) << variant.options << ": at most " << difference.largest;
+        // The program multiplies matrices where the device can; the library does not on a device of the
+        // caller's.
+        const bool otherSums = variant.method == LIMPID_METHOD_NANO && device().info().cooperativeMatrices;
+        if (otherSums)
+            EXPECT_LT(difference.largest, 0.05) << variant.options;
+        else
+            EXPECT_EQ(difference.values, 0u) << variant.options << ": at most " << difference.largest;
     }
 }
 

@@ -106,6 +106,7 @@ TEST_F(HostFramesTest, SvgfAndNanoAreTheSameInsideAndOutside) {
             const limpid_host_frame given = hostFrame(frame, depths, ids, result);
             ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
             filters_ = gpu::filterChoice(device()).backing;
+            matrices_ = gpu::filterChoice(device()).matrices;
             inside = denoise(*denoise::findDenoiser(name), frame);
         }
         // Not equal bit for bit: cameras are converted to matrices and back, which rounds, and pixels without

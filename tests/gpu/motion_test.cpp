@@ -87,6 +87,15 @@ class MotionTest : public TraceTest {
         EXPECT_EQ(counts.wrongSky, 0u);
     }
 
+    /// Of the first frame.
+    std::vector<float> pictureOf(scene::GpuScene& gpuScene, const Sequence& sequence) {
+        RenderSettings settings;
+        settings.extent = {64, 48};
+        FrameRenderer renderer(device(), gpuScene, settings, 1);
+        renderer.render(sequence.moment(0, settings.extent));
+        return renderer.download().beauty;
+    }
+
     std::vector<TestHit> hitsOf(const scene::GpuScene& gpuScene, const CameraParams& camera) {
         std::vector<TestRay> rays;
         for (uint32_t y = 0; y < extent.height; ++y) {
@@ -202,11 +211,35 @@ TEST_P(MotionTest, ALightAloneMoves) {
         const scene::SceneData data = scene::buildSceneData(scene);
         scene::GpuScene gpuScene(device(), data, GetParam());
         const Sequence sequence(scene, data, scene.cameras.at(0), std::nullopt, {.start = 1.0});
-        RenderSettings settings;
-        settings.extent = {64, 48};
-        FrameRenderer renderer(device(), gpuScene, settings, 1);
-        renderer.render(sequence.moment(0, settings.extent));
-        return renderer.download().beauty;
+        return pictureOf(gpuScene, sequence);
+    };
+    EXPECT_EQ(picture(true), picture(false));
+}
+
+TEST_P(MotionTest, ACameraAloneMoves) {
+    const auto picture = [&](bool moves) {
+        scene::Scene scene = scene::builtinScene("cornell");
+        scene::Camera& camera = scene.cameras.at(0);
+        const vec3 by(0.2f, 0.1f, -0.3f);
+        if (moves) {
+            scene.rig.nodes = {{.name = "dolly"}, {.name = "camera", .parent = 0, .matrix = camera.toWorld}};
+            scene.rig.order = {0, 1};
+            camera.node = 1;
+            scene.rig.clips.push_back({"moves",
+                                       {{0,
+                                         scene::AnimatedValue::Translation,
+                                         scene::Interpolation::Linear,
+                                         3,
+                                         {0.0f, 1.0f},
+                                         {0.0f, 0.0f, 0.0f, by.x, by.y, by.z}}}});
+            scene::chooseClip(scene, "");
+        } else {
+            camera.toWorld[3] += vec4(by, 0.0f);
+        }
+        const scene::SceneData data = scene::buildSceneData(scene);
+        scene::GpuScene gpuScene(device(), data, GetParam());
+        const Sequence sequence(scene, data, scene.cameras.at(0), std::nullopt, {.start = 1.0});
+        return pictureOf(gpuScene, sequence);
     };
     EXPECT_EQ(picture(true), picture(false));
 }

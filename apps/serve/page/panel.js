@@ -89,8 +89,10 @@ export class Panel {
       case 'bool': return controls.checkbox(options);
       case 'int':
       case 'float': return controls.slider(options);
-      case 'choice': return controls.select(options, 
-                                                   field.choices.map((name, i) => [name, name, field.choice_help?.[i]]));
+      case 'choice': {
+        const help = field.choice_help ?? [];
+        return controls.select(options, field.choices.map((name, i) => [name, name, help[i]]));
+      }
       case 'index': return controls.select(options, []);
       case 'vector': return controls.vector(options);
       case 'lights': return new LightDesk(this.store, this.ask);
@@ -109,7 +111,7 @@ export class Panel {
   showRow(key, {element, control, reset, field, help, explained}) {
     const value = this.store.value(key), {facts} = this.store;
     const ofChoice = field.choice_help?.[field.choices.indexOf(value)];
-    if (ofChoice) explained.textContent = `${help}. ${value}: ${ofChoice}`;
+    if (ofChoice) setText(explained, `${help}. ${value}: ${ofChoice}`);
     if (field.kind === 'index') control.setChoices((facts[field.choices[0]] ?? []).map((name, i) => [i, name]));
     if (key === 'pass') this.showPasses(control, value);
     if (value !== undefined) control.show(value);

@@ -63,6 +63,17 @@ TEST(Protocol, SaysWhichDenoisersHaveAPart) {
     EXPECT_THAT(denoisersOf("seed"), testing::IsEmpty());
 }
 
+TEST(Protocol, ExplainsTheChoicesThatNeedIt) {
+    const nlohmann::json hello = helloMessage({}, 0);
+    size_t explained = 0;
+    for (const auto& field : hello.at("fields")) {
+        if (!field.contains("choice_help")) continue;
+        EXPECT_EQ(field.at("choice_help").size(), field.at("choices").size()) << field.at("key");
+        ++explained;
+    }
+    EXPECT_EQ(explained, 2u) << "integrator and denoiser";
+}
+
 TEST(Protocol, RefusesWhatIsNoMessage) {
     for (const char* text : {"",
                              "x",

@@ -13,7 +13,6 @@ void drawField(const Drawing& with, const char* key);
 
 /// Text under the mouse, if it is over the last row.
 void explainRow(const Drawing& with, const std::string& text);
-/// The same for the last control.
 
 /// Space on the left of rows, for the dots.
 void beginRows();

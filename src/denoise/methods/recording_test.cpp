@@ -83,7 +83,20 @@ TEST(RecordingTest, NanoIsSvgfWithMorePassesBeforeTheLast) {
     EXPECT_GT(names.size(), others.size() + 10);
     EXPECT_EQ(others, passesOf(graph, {}));
     EXPECT_EQ(names.back(), "svgf/compose");
-    EXPECT_EQ(passesOf(graph, {}, false, nano::record, true), names);
+}
+
+TEST(RecordingTest, NanoMultipliesMatricesWhereTheDeviceCan) {
+    for (const bool matrices : {false, true}) {
+        gpu::FrameGraph graph;
+        passesOf(graph, {}, false, nano::record, matrices);
+        size_t byMatrices = 0, others = 0;
+        for (const gpu::RecordedPass& pass : graph.passes()) {
+            byMatrices += pass.shader.find("_matrix") != std::string::npos ? 1 : 0;
+            others += pass.shader.find("nano_convolve") != std::string::npos ? 1 : 0;
+        }
+        EXPECT_EQ(byMatrices, matrices ? 19u : 0u);
+        EXPECT_EQ(others, matrices ? 0u : 19u);
+    }
 }
 
 TEST(RecordingTest, SignalsAreWrittenWhereTheyAreWanted) {

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "nano_around_matrix.comp.h"
 #include "nano_around_matrix_small.comp.h"
 #include "nano_within_matrix.comp.h"
@@ -43,6 +44,8 @@ uint32_t divideUp(uint32_t a, uint32_t b) {
 }
 
 gpu::Extent threadsOf(const NanoConvolveParams& params, const Share& share) {
+    if (share.tiles == 0 || params.outputGroups % (2 * share.tiles) != 0 || params.groups % 2 != 0)
+        throw Error("a layer of 'nano' has no shape for matrices");
     const uint32_t subgroups = share.small ? NANO_SMALL_SUBGROUPS : NANO_SUBGROUPS;
     const uint32_t blocks = divideUp(params.height, subgroups * share.rows * share.loops);
     return {divideUp(params.width, NANO_COLUMNS) * subgroups * subgroupSize,

@@ -81,6 +81,7 @@ uint weightsOf(uint group, uint number, uint column) {
 void store(FloatMatrix sums, ivec2 first, uint tile) {
     for (int i = 0; i < sums.length(); ++i) sums[i] = clamp(max(sums[i], 0.1 * sums[i]), -MAX_HALF, MAX_HALF);
     const uint at = gl_SubgroupID * PATCHES * PATCH;
+    sharedBarrier();  // what the subgroup has read from there
     coopMatStoreNV(HalfMatrix(sums), patches, at, PITCH, false);
     sharedBarrier();
     const uint pixel = gl_SubgroupInvocationID / 2u, part = gl_SubgroupInvocationID % 2u;
