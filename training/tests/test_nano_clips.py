@@ -100,6 +100,33 @@ def normals_of(height):
     return normal / normal.norm(dim=1, keepdim=True)
 
 
+class CarriedTest(unittest.TestCase):
+    image = torch.arange(2 * 3 * 5 * 7.0).view(2, 3, 5, 7)
+
+    def motion(self, columns, rows):
+        return torch.tensor([columns, rows])[None, :, None, None].repeat(2, 1, 5, 7)
+
+    def test_whole_pixels_are_fetched_exactly(self):
+        fetched, valid = warp.carried(self.image, self.motion(2.0, -1.0))
+        self.assertEqual(valid.shape, (2, 1, 5, 7))
+        self.assertTrue(torch.allclose(fetched[:, :, 1:, :5], self.image[:, :, :4, 2:], atol=1e-3))
+        self.assertTrue(valid[:, :, 1:, :5].all())
+
+    def test_motion_out_of_the_picture_is_invalid(self):
+        _, valid = warp.carried(self.image, self.motion(2.0, -1.0))
+        self.assertFalse(valid[:, :, 0].any() or valid[:, :, :, 5:].any())
+        _, valid = warp.carried(self.image, self.motion(-0.5, 0.5))
+        self.assertFalse(valid[:, :, :, 0].any() or valid[:, :, 4].any())
+        self.assertTrue(valid[:, :, :4, 1:].all())
+
+    def test_no_motion_is_invalid(self):
+        motion = self.motion(0.0, 0.0)
+        motion[0, :, 2, 3] = 65504
+        fetched, valid = warp.carried(self.image, motion)
+        self.assertEqual((~valid).nonzero().tolist(), [[0, 0, 2, 3]])
+        self.assertTrue(torch.isfinite(fetched).all())
+
+
 class VariedTest(unittest.TestCase):
     def test_normals_still_fit_the_surface(self):
         y, x = torch.meshgrid(torch.arange(12.0), torch.arange(12.0), indexing="ij")

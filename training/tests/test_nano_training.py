@@ -70,17 +70,39 @@ class TrainingTest(unittest.TestCase):
         self.assertLess(after[1], 0.5 * before[1])
         self.assertLess(after[1], 0.5 * judge.error(frame.svgf).item(), "SVGF's picture is too dark")
 
+    def trainer_of(self, *folders):
+        return train.Trainer(train.parse([*folders, *self.options("run", "--steps", "2")[1:]]))
+
     def test_pairs_of_frames_and_several_folders(self):
-        more = nano_clips.make_clips(self.path("more"), numbers=(4, 5))
-        options = self.options("run", "--steps", "2")
-        trainer = train.Trainer(train.parse([self.data, more, *options[1:]]))
+        folders = [nano_clips.make_clips(self.path(str(first)), numbers=(first, first + 1)) for first in (4, 5)]
+        trainer = self.trainer_of(*folders)
         self.assertEqual(len(trainer.frames), 8)
-        self.assertEqual([(before.number, after.number) for before, after in trainer.groups], [(4, 5), (4, 5)])
+        self.assertEqual([(before.clip, before.number, after.clip, after.number) for before, after in trainer.groups],
+                         [(clip, n, clip, n + 1) for n in (4, 5) for clip in ("000000", "000001")])
         frame = trainer.batch()
         self.assertEqual(frame.depth.shape, (2, 1, 32, 32), "one pair is a batch of two")
         with mock.patch.object(loss.Judge, "change", lambda judge, picture: 100 * picture.mean()):
             changed = trainer.loss(frame).item()
         self.assertGreater(changed, trainer.loss(frame).item() + 1)
+
+    def test_frames_of_different_folders_are_no_pairs(self):
+        folders = [nano_clips.make_clips(self.path(str(n)), files=1, numbers=(n,)) for n in (1, 2)]
+        trainer = self.trainer_of(*folders)
+        self.assertFalse(trainer.paired)
+        self.assertEqual([[frame.number for frame in group] for group in trainer.groups], [[1], [2]])
+
+    def test_folders_with_and_without_pairs_are_refused(self):
+        paired = nano_clips.make_clips(self.path("paired"), numbers=(4, 5))
+        text = self.data + ": has no consecutive frames"
+        self.ends(3, text, self.trainer_of, paired, self.data)
+        self.ends(3, text, self.trainer_of, self.data, paired)
+
+    def test_says_how_many_pairs_there_are(self):
+        told = io.StringIO()
+        paired = nano_clips.make_clips(self.path("paired"), numbers=(4, 5, 6))
+        with contextlib.redirect_stdout(told):
+            self.trainer_of(paired).run()
+        self.assertIn("6 frames, 4 pairs, 0 frames to validate", told.getvalue())
 
     def test_leaves_what_it_learnt(self):
         other = nano_clips.make_clips(self.path("other"), files=1, rows=20, columns=24)
@@ -228,7 +250,7 @@ class TrainingTest(unittest.TestCase):
         gradients = []
         for number in (0, 1):
             trainer.workers.number = number
-            trainer.use(clips.load(self.data, "cpu", number, 2))
+            trainer.use([clips.load(self.data, "cpu", number, 2)])
             trainer.optimizer.zero_grad()
             trainer.loss(trainer.batch()).backward()
             gradients.append([weight.grad.clone() for weight in trainer.net.parameters()])
@@ -271,6 +293,15 @@ class FileTest(unittest.TestCase):
         _, metadata = tensor_file.read(file)
         self.assertEqual(metadata["limpid.network"], "nano")
         self.assertEqual(json.loads(metadata["limpid.training"])["steps"], 7)
+
+    def test_metadata_tell_of_the_training_and_not_of_the_call(self):
+        def told(**state):
+            return json.loads(export.metadata_of(state)["limpid.training"])
+
+        self.assertEqual(told(options={"start": "a", "clips": ["b"], "rate": 1})["options"], {"rate": 1})
+        self.assertEqual(told(datasets=[{"seed": 1}, {"seed": 2}])["datasets"], [{"seed": 1}, {"seed": 2}])
+        self.assertEqual(told(dataset={"seed": 3})["datasets"], [{"seed": 3}], "as older checkpoints have it")
+        self.assertEqual(told()["datasets"], [])
 
     def test_means_over_steps_are_exported(self):
         means = [weight + 1 for weight in self.weights.values()]

@@ -20,6 +20,7 @@
 #include "cli/console/progress.h"
 #include "cli/options/device_options.h"
 #include "cli/options/long_render_options.h"
+#include "denoise/methods/nano/nano_network.h"
 #include "lab/dataset/dataset_clip.h"
 #include "lab/dataset/dataset_example.h"
 #include "lab/dataset/dataset_motion.h"
@@ -63,6 +64,13 @@ uint32_t numberFrom(uint32_t seed, std::string_view purpose, uint64_t index) {
     x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
     x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
     return static_cast<uint32_t>(x ^ (x >> 31));
+}
+
+/// A checksum of the network's weights, on which the clips' past depends.
+std::string weightsOfNano() {
+    Hash64 hash;
+    hash.add(denoise::nanoNetwork().weights);
+    return hashText(hash.value());
 }
 
 fs::path folderOf(const std::string& scene) {
@@ -151,11 +159,11 @@ class Dataset {
             result["version"] = 4;
             result["sequence"] = o_.sequence;
             result["picture_height"] = o_.pictureHeight;
+            result["denoiser"] = o_.denoiser;
+            result["moving"] = o_.moving;
+            result["night"] = o_.night;
+            if (o_.denoiser == "nano") result["weights"] = weightsOfNano();
         }
-        // Absent by default, so that earlier datasets stay valid.
-        if (o_.denoiser != "svgf") result["denoiser"] = o_.denoiser;
-        if (o_.moving > 0.0) result["moving"] = o_.moving;
-        if (o_.night > 0.0) result["night"] = o_.night;
         return result;
     }
 

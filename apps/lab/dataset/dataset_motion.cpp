@@ -30,6 +30,7 @@ struct Part {
     Thing thing;
     int sun = none;  ///< of Scene::lights; otherwise it is the thing
     bool shines = false, moves = false, switched = false;
+    bool goesOut = false;  ///< when it is switched; otherwise it goes on
 };
 
 scene::Channel channelOf(int node, AnimatedValue value, Interpolation interpolation) {
@@ -77,7 +78,8 @@ class Mover {
     ClipMotion add() {
         choose();
         ClipMotion count;
-        for (const Part& part : parts_) {
+        for (Part& part : parts_) {
+            part.goesOut = part.switched && random_.chance(0.6f);
             count.objects += part.moves && !part.shines ? 1 : 0;
             count.lights += part.moves && part.shines ? 1 : 0;
             count.switched += part.switched ? 1 : 0;
@@ -136,11 +138,10 @@ class Mover {
         chooseSome(switchable, switchShare, &Part::switched);
     }
 
-    /// Two values, of which the one while the light is on is the rest's.
+    /// Two values, of which the one while the light is on is the rest's. All of a part is switched alike.
     template <typename Value>
-    void addSwitch(int node, AnimatedValue what, const Value& on, const Value& off) {
+    void addSwitch(int node, AnimatedValue what, bool goesOut, const Value& on, const Value& off) {
         scene::Channel channel = channelOf(node, what, Interpolation::Step);
-        const bool goesOut = random_.chance(0.6f);
         addKey(channel, 0.0f, goesOut ? on : off);
         addKey(channel, switchTime_, goesOut ? off : on);
         clip_.channels.push_back(std::move(channel));
@@ -158,7 +159,7 @@ class Mover {
                 origin = boundsOf(scene_, instance).center();
                 parent = addNode(scene_.rig, "switch", mover, origin - center);
                 // Nothing is left of it, which shaders and light tree know (isInvertible()).
-                addSwitch(parent, AnimatedValue::Scale, vec3(1.0f), vec3(0.0f));
+                addSwitch(parent, AnimatedValue::Scale, part.goesOut, vec3(1.0f), vec3(0.0f));
             }
             const int node = addNode(scene_.rig, instance.name, parent);
             scene_.rig.nodes.back().matrix = glm::translate(mat4(1.0f), -origin) * instance.transform;
@@ -169,7 +170,8 @@ class Mover {
             int parent = mover;
             if (part.switched) {
                 parent = addNode(scene_.rig, "switch", mover);
-                addSwitch(parent, AnimatedValue::Translation, vec3(0.0f), vec3(0.0f, farAway * size_, 0.0f));
+                addSwitch(parent, AnimatedValue::Translation, part.goesOut, vec3(0.0f),
+                          vec3(0.0f, farAway * size_, 0.0f));
             }
             light.node = addNode(scene_.rig, light.name, parent, light.position - center);
         }
@@ -225,12 +227,7 @@ class Mover {
             const float distance = reach * random_.between(0.2f, 1.0f);
             vec3 place = rest + distance * random_.direction();
             if (surroundings_) place.y = std::max(place.y, rest.y);
-            if (surroundings_ && surroundings_->name == "room") {
-                const vec3 margin = 0.5f * thing.bounds.size() + 0.005f * size_;
-                const scene::Aabb walls = boundsOf(scene_, *surroundings_);
-                place = glm::clamp(place, glm::min(walls.lower + margin, rest),
-                                   glm::max(walls.upper - margin, rest));
-            }
+            place = withinWalls(scene_, place, 0.5f * thing.bounds.size() + 0.005f * size_, rest);
             if (glm::distance(place, eye) > thing.radius() + 0.15f * size_) return place;
         }
         return rest;
@@ -243,7 +240,8 @@ class Mover {
         if (part.switched) {
             parent = addNode(scene_.rig, "switch", none);
             // Half a turn about a horizontal axis.
-            addSwitch(parent, AnimatedValue::Rotation, glm::quat(1, 0, 0, 0), glm::quat(0, 1, 0, 0));
+            addSwitch(parent, AnimatedValue::Rotation, part.goesOut, glm::quat(1, 0, 0, 0),
+                      glm::quat(0, 1, 0, 0));
         }
         const int mover = addNode(scene_.rig, "turn", parent);
         if (part.moves) {

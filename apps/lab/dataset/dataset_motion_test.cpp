@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "lab/dataset/dataset_night.h"
@@ -128,7 +129,42 @@ TEST(DatasetMotion, TheSameSeedMovesTheSame) {
     EXPECT_NE(valuesOf(one), valuesOf(third));
 }
 
-/// A light that is off has no size, or is far away.
+/// With a bulb whose light shines beside it.
+scene::Scene sceneWithABulbAndItsLight() {
+    for (uint32_t seed = 1;; ++seed) {
+        scene::Scene scene = scene::randomStillLife(seed);
+        if (std::ranges::any_of(thingsOf(scene), [&](const Thing& thing) {
+                return !thing.lights.empty() && std::ranges::any_of(thing.instances, [&](size_t i) {
+                    return isLamp(scene, scene.instances[i]);
+                });
+            }))
+            return scene;
+    }
+}
+
+TEST(DatasetMotion, ABulbAndItsLightAreSwitchedAlike) {
+    const scene::Scene still = sceneWithABulbAndItsLight();
+    size_t on = 0, off = 0;
+    for (uint32_t seed = 0; seed < 200; ++seed) {
+        scene::Scene scene = still;
+        addMotion(scene, seed, {}, stored);
+        std::map<int, std::vector<bool>> litAtFirst;  // by the node that moves the thing
+        for (const scene::Channel& channel : clipOf(scene).channels) {
+            const int thing = scene.rig.nodes[static_cast<size_t>(channel.node)].parent;
+            if (channel.interpolation != scene::Interpolation::Step || thing == scene::none) continue;
+            const float lit = channel.value == scene::AnimatedValue::Scale ? 1.0f : 0.0f;
+            litAtFirst[thing].push_back(channel.values[1] == lit);
+        }
+        for (const auto& [thing, lit] : litAtFirst) {
+            EXPECT_EQ(std::ranges::count(lit, lit.front()), std::ssize(lit)) << scene.name << " " << seed;
+            if (lit.size() > 1) ++(lit.front() ? on : off);
+        }
+    }
+    EXPECT_GT(on, 5u);
+    EXPECT_GT(off, 5u);
+}
+
+/// A light that is off has no size, is far away, or shines from below the ground.
 TEST(DatasetMotion, SomethingStaysLit) {
     for (uint32_t seed = 0; seed < seeds; ++seed) {
         scene::Scene scene = sceneOf(seed);
@@ -136,12 +172,18 @@ TEST(DatasetMotion, SomethingStaysLit) {
         if (!scene.environment.empty()) continue;
         for (const double time : {0.0, 1.0}) {
             const scene::RigPose pose = evaluate(scene.rig, &clipOf(scene), time);
+            const auto isUp = [&](const scene::PunctualLight& light) {
+                if (light.kind != scene::PunctualLight::Kind::Directional || light.node == scene::none)
+                    return true;
+                return pose.toWorld[static_cast<size_t>(light.node)][2].y > 0.0f;
+            };
             const auto isOn = [&](int node) {
                 if (node == scene::none) return true;
                 const mat4& toWorld = pose.toWorld[static_cast<size_t>(node)];
                 return glm::length(vec3(toWorld[0])) > 0.5f && glm::length(vec3(toWorld[3])) < 100.0f;
             };
-            bool lit = std::ranges::any_of(scene.lights, [&](const auto& light) { return isOn(light.node); });
+            bool lit = std::ranges::any_of(
+                scene.lights, [&](const auto& light) { return isOn(light.node) && isUp(light); });
             for (const scene::Instance& instance : scene.instances)
                 lit |= isLamp(scene, instance) && isOn(instance.node);
             EXPECT_TRUE(lit) << scene.name;
@@ -182,39 +224,89 @@ TEST(DatasetMotion, AStillClipMovesNothing) {
     EXPECT_EQ(count, 1u);
 }
 
-/// Of all lamps and lights of one kind.
-double powerOf(const scene::Scene& scene, bool directional) {
-    double sum = 0.0;
-    for (const scene::PunctualLight& light : scene.lights)
-        if ((light.kind == scene::PunctualLight::Kind::Directional) == directional)
-            sum += double{light.intensity.g};
-    if (directional) return sum;
-    for (const scene::Material& material : scene.materials) sum += double{material.emission.g};
-    return sum;
+float strengthOf(const vec3& light) {
+    return light.r + light.g + light.b;
+}
+
+/// Of each lamp and each light of the thing.
+std::vector<float> strengthsOf(const scene::Scene& scene, const Thing& thing) {
+    std::vector<float> strengths;
+    for (const size_t i : thing.lights) strengths.push_back(strengthOf(scene.lights[i].intensity));
+    for (const size_t i : thing.instances) {
+        const auto material = static_cast<size_t>(scene.instances[i].material);
+        const float strength = strengthOf(scene.materials[material].emission);
+        if (strength > 0.0f) strengths.push_back(strength);
+    }
+    return strengths;
+}
+
+/// How strong each lamp is at night, of 1 by day.
+std::vector<float> factorsOf(const scene::Scene& day, const scene::Scene& night) {
+    std::vector<float> factors;
+    for (const Thing& thing : thingsOf(day)) {
+        if (!shines(day, thing)) continue;
+        const std::vector<float> before = strengthsOf(day, thing), after = strengthsOf(night, thing);
+        const float factor = after.front() / before.front();
+        for (size_t i = 0; i < before.size(); ++i)
+            EXPECT_NEAR(after[i] / before[i], factor, 1e-5f) << day.name;
+        factors.push_back(factor);
+    }
+    return factors;
 }
 
 TEST(DatasetNight, OneOrTwoLampsKeepTheirStrength) {
-    size_t added = 0;
+    std::vector<size_t> scenes(3);  // by the number of lamps that stay as they are
     for (uint32_t seed = 0; seed < seeds; ++seed) {
         const scene::Scene day = sceneOf(seed);
         scene::Scene night = day;
         makeNight(night, seed);
-        EXPECT_LE(powerOf(night, true), 0.21 * powerOf(day, true)) << day.name;
+        const std::vector<float> factors = factorsOf(day, night);
+        const auto kept = static_cast<size_t>(std::ranges::count(factors, 1.0f));
+        ASSERT_LE(kept, 2u) << day.name;
+        EXPECT_EQ(kept == 0, factors.empty()) << day.name;
+        ++scenes[kept];
+        for (const float factor : factors) {
+            if (factor == 1.0f) continue;
+            EXPECT_GE(factor, 0.0099f) << day.name;
+            EXPECT_LE(factor, 0.2001f) << day.name;
+        }
+        const size_t added = night.lights.size() - day.lights.size();
+        if (factors.empty())
+            EXPECT_TRUE(added == 1 || added == 2) << day.name;
+        else
+            EXPECT_EQ(added, 0u) << day.name;
+    }
+    for (size_t kept = 0; kept < scenes.size(); ++kept) EXPECT_GT(scenes[kept], 0u) << kept;
+}
+
+TEST(DatasetNight, SunAndSkyAreDim) {
+    for (uint32_t seed = 0; seed < seeds; ++seed) {
+        const scene::Scene day = sceneOf(seed);
+        scene::Scene night = day;
+        makeNight(night, seed);
+        for (size_t i = 0; i < day.lights.size(); ++i) {
+            if (day.lights[i].kind != scene::PunctualLight::Kind::Directional) continue;
+            EXPECT_LE(night.lights[i].intensity.g, 0.21f * day.lights[i].intensity.g) << day.name;
+        }
         for (size_t i = 0; i < day.environment.radiance.size(); ++i)
             ASSERT_LE(night.environment.radiance[i].g, 0.21f * day.environment.radiance[i].g) << day.name;
-        added += night.lights.size() - day.lights.size();
-        const auto lamps =
-            std::ranges::count_if(thingsOf(day), [&](const Thing& thing) { return shines(day, thing); });
-        const double before = powerOf(day, false), after = powerOf(night, false);
-        if (lamps == 0) {
-            EXPECT_GT(after, 0.0) << day.name;
-        } else if (lamps == 1) {
-            EXPECT_EQ(after, before) << day.name;
-        } else if (lamps > 2) {
-            EXPECT_LT(after, before) << day.name;
+    }
+}
+
+/// Rooms have lamps of their own, so these are taken away.
+TEST(DatasetNight, LightsThatAreAddedAreWithinTheWalls) {
+    for (uint32_t seed = 0; seed < 200; ++seed) {
+        scene::Scene scene = sceneOf(2 * seed % seeds);
+        scene.lights.clear();
+        for (scene::Material& material : scene.materials) material.emission = vec3(0.0f);
+        makeNight(scene, seed);
+        ASSERT_GT(scene.lights.size(), 0u);
+        const scene::Aabb walls = boundsOf(scene, *surroundingsOf(scene));
+        for (const scene::PunctualLight& light : scene.lights) {
+            EXPECT_TRUE(glm::all(glm::greaterThan(light.position, walls.lower))) << scene.name << " " << seed;
+            EXPECT_TRUE(glm::all(glm::lessThan(light.position, walls.upper))) << scene.name << " " << seed;
         }
     }
-    EXPECT_GT(added, 0u);
 }
 
 }  // namespace

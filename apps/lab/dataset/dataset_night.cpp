@@ -48,7 +48,8 @@ class Night {
             const Thing& thing = things_[random_.index(things_.size())];
             vec3 away = random_.direction();
             if (surroundingsOf(scene_)) away.y = std::abs(away.y);
-            light.position = thing.center() + (thing.radius() + random_.between(0.05f, 0.6f) * size) * away;
+            const vec3 place = thing.center() + (thing.radius() + random_.between(0.05f, 0.6f) * size) * away;
+            light.position = withinWalls(scene_, place, vec3(0.005f * size), thing.center());
         }
         const float strength = random_.logarithmic(0.1f, 1.5f);
         const float warmth = random_.between(0.0f, 1.0f);

@@ -68,6 +68,13 @@ std::vector<Thing> thingsOf(const scene::Scene& scene) {
     return things;
 }
 
+vec3 withinWalls(const scene::Scene& scene, const vec3& place, const vec3& margin, const vec3& rest) {
+    const scene::Instance* room = surroundingsOf(scene);
+    if (!room || room->name != "room") return place;
+    const scene::Aabb walls = boundsOf(scene, *room);
+    return glm::clamp(place, glm::min(walls.lower + margin, rest), glm::max(walls.upper - margin, rest));
+}
+
 float sizeOf(const scene::Scene& scene, const std::vector<Thing>& things) {
     scene::Aabb all;
     for (const Thing& thing : things)

@@ -28,6 +28,10 @@ bool shines(const scene::Scene& scene, const Thing& thing);
 /// All but the surroundings, what the first camera is in, and directional lights.
 std::vector<Thing> thingsOf(const scene::Scene& scene);
 
+/// Moves the place so that it is at least `margin` away from the room's walls, or as far as `rest` where that
+/// is closer to one. Returns it unchanged if there is no room.
+vec3 withinWalls(const scene::Scene& scene, const vec3& place, const vec3& margin, const vec3& rest);
+
 /// Half of the space that the things take, or where they are small, part of their distance from the camera.
 float sizeOf(const scene::Scene& scene, const std::vector<Thing>& things);
 

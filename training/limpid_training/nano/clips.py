@@ -89,14 +89,16 @@ def smallest_edge(frames):
 
 
 def pairs_of(frames):
-    """Returns a list of each frame whose next one is stored, too, and that next one. load() returns frames in order."""
+    """Returns a list of each frame of a folder whose next one is stored, too, and that next one. They are in the order
+    of load(). Clips of different folders have the same names, so each folder has its own pairs."""
     return [(frame, after) for frame, after in zip(frames, frames[1:])
             if frame.clip == after.clip and frame.number + 1 == after.number]
 
 
 def crops(groups, count, edge, generator):
-    """Returns (frames of a group, count, CHANNELS, edge, edge): of randomly chosen groups of frames squares that are in
-    the same place. They begin at even rows and columns, as the 2x2 pixels do that the network's next level joins."""
+    """Returns (frames of a group, count, CHANNELS, edge, edge): of randomly chosen groups of frames squares that are
+    in the same place. They begin at even rows and columns, as the 2x2 pixels do that the network's next level
+    joins."""
     chosen = []
     for _ in range(count):
         group = groups[int(torch.randint(len(groups), (1,), generator=generator))]
@@ -107,9 +109,9 @@ def crops(groups, count, edge, generator):
 
 
 def varied(channels, generator):
-    """Data augmentation: mirrors and transposes a batch (frames of a group, batch, CHANNELS, rows, columns), permutes its
-    colours, all of it in the same way, and scales the light of each group by its own factor from 1/4 to 4. Returns
-    floats (frames of a group * batch, CHANNELS, rows, columns).
+    """Data augmentation: mirrors and transposes a batch (frames of a group, batch, CHANNELS, rows, columns), permutes
+    its colours, all of it in the same way, and scales the light of each group by its own factor from 1/4 to 4.
+    Returns floats (frames of a group * batch, CHANNELS, rows, columns).
 
     The result is still a valid batch. Only the deviations of light are slightly off: they are of the luminance, which
     changes when colours are permuted."""

@@ -13,12 +13,15 @@ from .. import checkpoint, tensor_file
 from . import network, weights
 
 #: Options of a training that say nothing of the network.
-OF_THE_CALL = ("clips", "output", "device", "resume", "overwrite", "validation", "report", "save", "time_limit")
+OF_THE_CALL = ("clips", "output", "device", "resume", "overwrite", "start", "validation", "report", "save",
+               "time_limit")
 
 
 def metadata_of(state):
     options = {key: value for key, value in state.get("options", {}).items() if key not in OF_THE_CALL}
-    training = {"datasets": state.get("datasets"), "steps": state.get("step"), "seconds": round(state.get("seconds", 0)),
+    # Older checkpoints have one data set.
+    datasets = [dataset for dataset in state.get("datasets") or [state.get("dataset")] if dataset]
+    training = {"datasets": datasets, "steps": state.get("step"), "seconds": round(state.get("seconds", 0)),
                 "options": options}
     return {"limpid.network": "nano", "limpid.training": json.dumps(training)}
 

@@ -83,8 +83,8 @@ class Judge:
         return (difference * SCALE * self.scale).mean()
 
     def change(self, picture):
-        """Returns the loss of the errors' change from frame to frame: the first half of the batch are the frames before
-        those of the second half. Surfaces are followed; those that have just appeared do not count."""
+        """Returns the loss of the errors' change from frame to frame: the first half of the batch are the frames
+        before those of the second half. Surfaces are followed; those that have just appeared do not count."""
         before, after = (picture - self.mean).chunk(2)
         before, valid = warp.carried(before, self.motion.chunk(2)[1])
         valid = valid & (self.frames.chunk(2)[1].amin(1, keepdim=True) > 1)

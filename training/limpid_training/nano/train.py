@@ -114,8 +114,8 @@ class Trainer:
             self.restore(saved)
         self.predictor = self.workers.shared(self.net)
         try:
-            self.use([frame for folder in options.clips for frame in
-                      clips.load(folder, self.workers.device, self.workers.number, self.workers.count)])
+            self.use([clips.load(folder, self.workers.device, self.workers.number, self.workers.count)
+                      for folder in options.clips])
             self.judged = []
             if options.validation and self.workers.number == 0:
                 self.judged = clips.load(options.validation, self.workers.device)
@@ -124,14 +124,17 @@ class Trainer:
             checkpoint.end(str(fault), checkpoint.UNREADABLE)
         self.clear_sums()
 
-    def use(self, frames):
-        """Learns from these frames."""
-        self.frames = frames
-        self.edge = min(self.options.crop, clips.smallest_edge(frames))
-        pairs = clips.pairs_of(frames)
+    def use(self, folders):
+        """Learns from these lists of frames, one of each folder. Raises ValueError if only some folders have pairs."""
+        self.frames = [frame for frames in folders for frame in frames]
+        self.edge = min(self.options.crop, clips.smallest_edge(self.frames))
+        pairs = [clips.pairs_of(frames) for frames in folders]
+        self.paired = any(pairs)
+        if self.paired and not all(pairs):
+            folder = self.options.clips[pairs.index([])]
+            raise ValueError(f"{folder}: has no consecutive frames, but other clips have; train on either kind")
         #: What crops are cut from: pairs of frames, or single ones where no two follow each other.
-        self.groups = pairs or [(frame,) for frame in frames]
-        self.paired = bool(pairs)
+        self.groups = [group for of_folder in pairs for group in of_folder] or [(frame,) for frame in self.frames]
 
     def load(self):
         """Returns the checkpoint to begin with, if it is of this network; None if the weights are new."""
@@ -283,7 +286,8 @@ class Trainer:
             os.makedirs(options.output, exist_ok=True)
             weights_count = sum(weight.numel() for weight in self.net.parameters())
             print(f"{weights_count} weights, {self.net.multiplications():.0f} multiplications per pixel; "
-                  f"{len(self.frames)} frames, {len(self.judged)} to validate", flush=True)
+                  f"{len(self.frames)} frames, {len(self.groups) if self.paired else 0} pairs, "
+                  f"{len(self.judged)} frames to validate", flush=True)
         self.before, self.began = self.seconds, time.monotonic()
         reported = saved = self.began
         while self.progress() < 1:
