@@ -79,7 +79,8 @@ void addFrame(gpu::Device& device, FrameRenderer& renderer, const std::string& p
     const std::string lastLevel = fmt::format("svgf/level {}", denoise::SvgfSettings{}.levels);
     for (const std::string signal : {"diffuse", "specular"}) {
         const std::string reproject = "svgf/reproject " + signal;
-        file.tensors[prefix + signal] = tensorOf(pictureOf(device, graph, "svgf/variance " + signal, "color"));
+        file.tensors[prefix + signal] =
+            tensorOf(pictureOf(device, graph, "svgf/variance " + signal, "color"));
         file.tensors[prefix + signal + ".first"] = tensorOf(pictureOf(device, graph, "svgf/level 1", signal));
         file.tensors[prefix + signal + ".svgf"] = tensorOf(pictureOf(device, graph, lastLevel, signal));
         file.tensors[prefix + signal + ".past"] =
