@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <ranges>
 #include <string>
 #include <utility>
 
@@ -279,10 +278,10 @@ ClipMotion addMotion(scene::Scene& scene, uint32_t seed, const SequenceTiming& t
 
 void addStillClip(scene::Scene& scene) {
     // Lamps come before other things.
-    auto things = scene.instances | std::views::reverse;
-    const auto found = std::ranges::find_if(
-        things, [&](const scene::Instance& instance) { return &instance != surroundingsOf(scene); });
-    if (found == things.end()) return;
+    const auto found =
+        std::find_if(scene.instances.rbegin(), scene.instances.rend(),
+                     [&](const scene::Instance& instance) { return &instance != surroundingsOf(scene); });
+    if (found == scene.instances.rend()) return;
     const int parent = addNode(scene.rig, "still", none);
     found->node = addNode(scene.rig, found->name, parent);
     scene.rig.nodes.back().matrix = found->transform;
