@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string>
 
+#include "base/divide_up.h"
 #include "base/error.h"
 #include "denoise/kpcn/kpcn_params.h"
 #include "denoise/stages/atrous/levels.h"
@@ -48,10 +49,6 @@ constexpr uint32_t levelSteps[] = {1, 2, 8, 32, 128, 512};
 
 uint32_t stepOf(int left) {
     return levelSteps[left - 1];
-}
-
-uint32_t divideUp(uint32_t a, uint32_t b) {
-    return (a + b - 1) / b;
 }
 
 /// The shaders for one precision. (KpcnPrecision::Host uses only `features`, in single precision.)

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/divide_up.h"
 #include "base/error.h"
 #include "nano_around_matrix.comp.h"
 #include "nano_around_matrix_small.comp.h"
@@ -38,10 +39,6 @@ constexpr std::array<Share, NANO_LEVELS> halveShares{{{},
                                                       {.tiles = 2, .rows = 1}}};
 
 constexpr uint32_t subgroupSize = 32;  // see DeviceInfo::cooperativeMatrices
-
-uint32_t divideUp(uint32_t a, uint32_t b) {
-    return (a + b - 1) / b;
-}
 
 gpu::Extent threadsOf(const NanoConvolveParams& params, const Share& share) {
     if (share.tiles == 0 || params.outputGroups % (2 * share.tiles) != 0 || params.groups % 2 != 0)
