@@ -73,8 +73,7 @@ void run(const FirstFrameBench& o) {
     const auto record = [&] {
         graph.beginFrame();
         denoise::DenoiserInput input = denoise::upload(graph, host);
-        input.filters = choice.backing;
-        input.matrices = choice.matrices;
+        input.choose(choice);
         method->record(graph, input, {}, {});
     };
     record();

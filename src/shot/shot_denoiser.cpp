@@ -132,9 +132,7 @@ CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame,
     if (!continues) graph.resetHistories();
     graph.beginFrame();
     denoise::DenoiserInput input = denoise::uploadBorrowed(graph, frame);
-    const gpu::FilterChoice choice = gpu::filterChoice(device_);
-    input.filters = choice.backing;
-    input.matrices = choice.matrices;
+    input.choose(gpu::filterChoice(device_));
     const denoise::DenoiserOutput clean = options_.method->record(graph, input, settings, options_.networks);
     graph.execute(device_);
     result.beauty = graph.downloadFloat(device_, clean.beauty);
@@ -154,7 +152,7 @@ std::vector<float> ShotDenoiser::smoothed(gpu::FrameGraph& graph, const HostFram
     graph.beginFrame();
     const gpu::Extent extent{frame.width, frame.height};
     denoise::DenoiserInput input;
-    input.filters = gpu::filterChoice(device_).backing;
+    input.choose(gpu::filterChoice(device_));
     const auto upload = [&](const char* name, const std::vector<float>& texels) {
         const gpu::ImageHandle image = graph.transient(name, gpu::Format::RGBA32Float, extent);
         graph.uploadBorrowed(image, gpu::bytesOf(texels));

@@ -35,8 +35,8 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     vec2 jitter{0.0f};
     /// The jitter changes from frame to frame, to smooth edges: TaaSettings::frames is 2 by default.
     bool jitterChanges = false;
-    gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterChoice(device)
-    bool matrices = false;                       ///< likewise
+    gpu::Backing filters = gpu::Backing::Image;  ///< these two: choose()
+    bool matrices = false;
     /// Made by the ingest pass, or empty: what the surfaces stage makes of a frame's layers. With them,
     /// methods whose `readsLayers` is false find normal, depth and ids empty.
     gpu::History surfaces;
@@ -47,6 +47,12 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     gpu::ImageHandle target;
     ReasonsRequest reasons;
     bool wantsSignals = false;  ///< DenoiserOutput::diffuse and specular, too
+
+    /// `choice`: from gpu::filterChoice(device).
+    void choose(const gpu::FilterChoice& choice) {
+        filters = choice.backing;
+        matrices = choice.matrices;
+    }
 };
 
 /// Uploads the frame's images; optional layers that are empty become zeros, but roughness, hit distance, and

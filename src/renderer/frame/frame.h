@@ -28,7 +28,7 @@ struct FrameInput {
     uint64_t samplesBefore = 0;                ///< per pixel, in the running means
     uint32_t samples = 1;                      ///< per pixel, in this frame
     uint32_t launchSamples = UINT32_MAX;       ///< maximum per launch, if a denoiser follows
-    gpu::FilterChoice filters;
+    gpu::FilterChoice filters;                 ///< from gpu::filterChoice(device)
     bool reasons = false;  ///< for debugging: the denoiser also tells why it kept or rejected histories
 };
 
