@@ -87,8 +87,21 @@ class MotionTest : public TraceTest {
         EXPECT_EQ(counts.wrongSky, 0u);
     }
 
-    /// Of the first frame.
-    std::vector<float> pictureOf(scene::GpuScene& gpuScene, const Sequence& sequence) {
+    /// Moves the first node in one second.
+    static void slide(scene::Scene& scene, const vec3& from, const vec3& to) {
+        scene.rig.clips.push_back({"moves",
+                                   {{0,
+                                     scene::AnimatedValue::Translation,
+                                     scene::Interpolation::Linear,
+                                     3,
+                                     {0.0f, 1.0f},
+                                     {from.x, from.y, from.z, to.x, to.y, to.z}}}});
+    }
+
+    std::vector<float> pictureAtOneSecond(const scene::Scene& scene) {
+        const scene::SceneData data = scene::buildSceneData(scene);
+        scene::GpuScene gpuScene(device(), data, GetParam());
+        const Sequence sequence(scene, data, scene.cameras.at(0), std::nullopt, {.start = 1.0});
         RenderSettings settings;
         settings.extent = {64, 48};
         FrameRenderer renderer(device(), gpuScene, settings, 1);
@@ -198,20 +211,11 @@ TEST_P(MotionTest, ALightAloneMoves) {
             scene.rig.nodes.push_back({.name = "light", .translation = from});
             scene.rig.order = {0};
             light.node = 0;
-            scene.rig.clips.push_back({"moves",
-                                       {{0,
-                                         scene::AnimatedValue::Translation,
-                                         scene::Interpolation::Linear,
-                                         3,
-                                         {0.0f, 1.0f},
-                                         {from.x, from.y, from.z, to.x, to.y, to.z}}}});
+            slide(scene, from, to);
         }
         scene.lights.push_back(light);
         if (moves) scene::chooseClip(scene, "");
-        const scene::SceneData data = scene::buildSceneData(scene);
-        scene::GpuScene gpuScene(device(), data, GetParam());
-        const Sequence sequence(scene, data, scene.cameras.at(0), std::nullopt, {.start = 1.0});
-        return pictureOf(gpuScene, sequence);
+        return pictureAtOneSecond(scene);
     };
     EXPECT_EQ(picture(true), picture(false));
 }
@@ -225,21 +229,12 @@ TEST_P(MotionTest, ACameraAloneMoves) {
             scene.rig.nodes = {{.name = "dolly"}, {.name = "camera", .parent = 0, .matrix = camera.toWorld}};
             scene.rig.order = {0, 1};
             camera.node = 1;
-            scene.rig.clips.push_back({"moves",
-                                       {{0,
-                                         scene::AnimatedValue::Translation,
-                                         scene::Interpolation::Linear,
-                                         3,
-                                         {0.0f, 1.0f},
-                                         {0.0f, 0.0f, 0.0f, by.x, by.y, by.z}}}});
+            slide(scene, vec3(0.0f), by);
             scene::chooseClip(scene, "");
         } else {
             camera.toWorld[3] += vec4(by, 0.0f);
         }
-        const scene::SceneData data = scene::buildSceneData(scene);
-        scene::GpuScene gpuScene(device(), data, GetParam());
-        const Sequence sequence(scene, data, scene.cameras.at(0), std::nullopt, {.start = 1.0});
-        return pictureOf(gpuScene, sequence);
+        return pictureAtOneSecond(scene);
     };
     EXPECT_EQ(picture(true), picture(false));
 }
