@@ -18,9 +18,9 @@ file(WRITE "${OUTPUT}.cpp" "#include \"${FILE}.h\"
 
 namespace limpid::embedded {
 namespace {
-constexpr uint32_t words[] = {
+constexpr uint32_t ${NAME}_words[] = {
 ${WORDS}};
 }
-const std::span<const uint32_t> ${NAME}{words};
+const std::span<const uint32_t> ${NAME}{${NAME}_words};
 }
 ")

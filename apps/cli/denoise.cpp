@@ -143,7 +143,7 @@ void addFilmOptions(CLI::App& command, shot::ShotRequest& o, size_t& window) {
     command.add_option("--recover", o.recover,
                        "Give back what the filter took away besides noise, by what the noise of neighbours "
                        "and frames tells: "
-                       "auto (default: svgf and nano, files of Cycles and pbrt-v4), on, off");
+                       "auto (default: svgf, nano and film, files of Cycles and pbrt-v4), on, off");
     command.add_option(
         "--shard", o.shard,
         "Only a part of the frames: 2/4 is the second of four; several processes can share a shot");

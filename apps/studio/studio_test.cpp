@@ -313,7 +313,7 @@ TEST_F(StudioTest, DenoisersWithoutTheirPartsShowTheirInput) {
     const json off{{"part.temporal", false}, {"part.spatial", false}, {"part.demodulation", false}};
     const json on{{"part.temporal", true}, {"part.spatial", true}, {"part.demodulation", true}};
     std::shared_ptr<const Picture> input;
-    for (const char* denoiser : {"temporal", "svgf", "nano", "atrous", "bilateral"}) {
+    for (const char* denoiser : {"temporal", "svgf", "nano", "film", "atrous", "bilateral"}) {
         const auto whole = rest(*studio, studio->edit({{"denoiser", denoiser}}));
         const auto without = rest(*studio, studio->edit(off));
         if (!input) input = without->picture;

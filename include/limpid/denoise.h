@@ -121,7 +121,10 @@ typedef enum limpid_method {
      * result to replace. Inputs, outputs and `signals` are those of SVGF, and its parameters `svgf.` count, too.
      * Closer to the truth, about as stable, slower. Light should be exposed so that white is about 1, and distances be
      * in metres. Needs no files. */
-    LIMPID_METHOD_NANO = 5
+    LIMPID_METHOD_NANO = 5,
+    /* The same with a network of ten times as many operations: for sequences offline and for stills, of 1 to 64
+     * samples a pixel. Slow on CPUs. */
+    LIMPID_METHOD_FILM = 6
 } limpid_method;
 
 /* The images of a frame, by content. docs/embedding.md lists which ones a method needs, and the effect of leaving one
@@ -248,7 +251,8 @@ typedef struct limpid_camera {
  * created for the first frame; limpid_denoiser_memory() returns their size. `*denoiser` is NULL on failure.
  * LIMPID_ERROR_UNSUPPORTED: the device has no images of this size (its maxImageDimension2D), or no buffers that large
  * (maxStorageBufferRange, maxBufferSize, maxMemoryAllocationSize): they have 8 bytes a pixel on GPUs, and for
- * LIMPID_METHOD_NANO 32 bytes a pixel on all devices, with both sides rounded up to multiples of 16. */
+ * LIMPID_METHOD_NANO 32 bytes a pixel on all devices, for LIMPID_METHOD_FILM 96, with both sides rounded up to
+ * multiples of 16. */
 LIMPID_API limpid_result limpid_denoiser_create(limpid_device* device, const limpid_denoiser_desc* desc,
                                                 limpid_denoiser** denoiser);
 /* NULL is ignored. Everything it has recorded must be finished on the device. */

@@ -40,7 +40,7 @@ typedef struct limpid_shot_desc {
     size_t size;
     const char* input;    /* "frame.exr", or "shot.%04d.exr" for all frames that exist; also .pfm, .hdr, .png */
     const char* output;   /* .exr: the input's file with a clean beauty; or .png. Not read by limpid_shot_explain(). */
-    const char* denoiser; /* "svgf" (default), "nano", "atrous", "temporal", "bilateral" or "kpcn" */
+    const char* denoiser; /* "svgf" (default), "nano", "film", "atrous", "temporal", "bilateral" or "kpcn" */
     const char* preset;   /* the settings of a paper or course; `limpid info` lists them */
     limpid_texts settings; /* of parameters: "svgf.alpha=0.1" */
     const char* weights;   /* a file of weights for "kpcn" instead of the installed one */
@@ -66,8 +66,8 @@ typedef struct limpid_shot_desc {
      * run: frames so far are written. May be NULL. */
     int32_t (*progress)(void* user, uint32_t done, uint32_t total);
     void* progress_user;
-    const char* recover; /* what was taken away besides noise comes back: "auto" (default; "svgf" and "nano", files of
-                          * Cycles and pbrt-v4), "on" or "off"; with a preset it is off by default */
+    const char* recover; /* what was taken away besides noise comes back: "auto" (default; "svgf", "nano" and "film",
+                          * files of Cycles and pbrt-v4), "on" or "off"; with a preset it is off by default */
 } limpid_shot_desc;
 
 typedef struct limpid_shot_summary {

@@ -11,9 +11,9 @@ __all__: list[str]
 
 _Image = NDArray[np.float32]
 _Matrix = NDArray[np.float64]
-_Method = Literal["svgf", "atrous", "temporal", "bilateral", "visibility", "nano"]
-_StillMethod = Literal["svgf", "atrous", "temporal", "bilateral", "visibility", "nano", "kpcn"]
-_ShotMethod = Literal["svgf", "atrous", "temporal", "bilateral", "nano", "kpcn"]
+_Method = Literal["svgf", "atrous", "temporal", "bilateral", "visibility", "nano", "film"]
+_StillMethod = Literal["svgf", "atrous", "temporal", "bilateral", "visibility", "nano", "film", "kpcn"]
+_ShotMethod = Literal["svgf", "atrous", "temporal", "bilateral", "nano", "film", "kpcn"]
 _Output = Literal["color", "radiance", "specular"]
 _Path = str | bytes | PathLike[str] | PathLike[bytes]
 

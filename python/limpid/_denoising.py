@@ -110,10 +110,10 @@ class Denoiser:
 
     width, height: size of all images in pixels, 1 to 32768.
     method: "svgf" (spatiotemporal variance-guided filtering), "nano" (SVGF and a small trained network: closer to the
-        truth, slower), "atrous" (temporal accumulation, then the edge-avoiding a-trous filter), "temporal" (temporal
-        accumulation alone), "bilateral" (a joint bilateral filter of one frame, without history: the simplest), or
-        "visibility" (for ambient occlusion or a shadow mask: the first component of radiance, 0 to 1; the result is
-        grey).
+        truth, slower), "film" (the same with a larger network: for stills and films), "atrous" (temporal accumulation,
+        then the edge-avoiding a-trous filter), "temporal" (temporal accumulation alone), "bilateral" (a joint bilateral
+        filter of one frame, without history: the simplest), or "visibility" (for ambient occlusion or a shadow mask:
+        the first component of radiance, 0 to 1; the result is grey).
     device: a limpid.Device, or text that chooses one as limpid.Device does; None: the best one.
     signals: 1: radiance is all light that is to be filtered; 2: radiance is diffuse light, and specular light is given
         separately.
@@ -230,7 +230,8 @@ class Denoiser:
         jitter: (x, y), offset of the rays from the pixels' centres, -0.5 to 0.5 pixels.
         reset: True after a cut: ignores the history.
         outputs: "color" for the picture including emission and albedo. A sequence of names gives a dict of arrays
-            instead: "color", and for "svgf" and "nano" "radiance" and "specular", the filtered inputs of these names.
+            instead: "color", and for "svgf", "nano" and "film" "radiance" and "specular", the filtered inputs of
+            these names.
 
         Raises ValueError, naming the argument, if a shape or type is wrong; limpid.Error if the library fails.
         """

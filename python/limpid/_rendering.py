@@ -60,8 +60,8 @@ def render(scene, width, height, spp=64, **options):
 
     Options:
     seed: of the random numbers; default: 0. The same seed gives the same picture on the same device.
-    denoiser: None, "temporal", "atrous", "svgf", "nano", "bilateral" or "kpcn": denoises the picture that is returned
-        as "color".
+    denoiser: None, "temporal", "atrous", "svgf", "nano", "film", "bilateral" or "kpcn": denoises the picture that is
+        returned as "color".
     parameters: a dict of names and values, such as {"pathtrace.max_depth": 4}; `limpid info` lists them.
     device: as in limpid.Denoiser.
     environment: path of an equirectangular .hdr or .exr.

@@ -66,7 +66,7 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     input: path of a frame, or of all frames of a shot: "shot.%04d.exr". EXR, PFM, HDR or PNG.
     output: path of the results, with a number if the input has one. EXR: the input's files with a clean beauty; PNG: a
         tone-mapped picture.
-    denoiser: "svgf" (default), "nano", "atrous", "temporal", "bilateral" or "kpcn".
+    denoiser: "svgf" (default), "nano", "film", "atrous", "temporal", "bilateral" or "kpcn".
     preset: the settings of a paper or course, by name.
     parameters: a dict of names and values: {"svgf.alpha": 0.1}.
     weights: path of weights for "kpcn" instead of those that come with Limpid.
@@ -83,8 +83,8 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     strength: share of the clean picture in the result, above 0 to 1.
     preserve: share of what was filtered away, in the mean over 5x5 pixels, that is given back, 0 to 1: more detail and
         more noise.
-    recover: "on" gives back what the filter took away besides noise, "off" does not; "auto": with "svgf" and
-        "nano", in files of Cycles and pbrt-v4, without a preset.
+    recover: "on" gives back what the filter took away besides noise, "off" does not; "auto": with "svgf",
+        "nano" and "film", in files of Cycles and pbrt-v4, without a preset.
     resume: goes on after the last complete output. Only for EXR.
     exposure: of a PNG: stops, or "auto".
     device: text or number that chooses a device as limpid.Device does, or a limpid.Device. In both cases the device is

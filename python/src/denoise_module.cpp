@@ -256,7 +256,8 @@ void addTables(py::module_& m) {
               {"temporal", LIMPID_METHOD_TEMPORAL},
               {"bilateral", LIMPID_METHOD_BILATERAL},
               {"visibility", LIMPID_METHOD_VISIBILITY},
-              {"nano", LIMPID_METHOD_NANO}});
+              {"nano", LIMPID_METHOD_NANO},
+              {"film", LIMPID_METHOD_FILM}});
     addNames(m, "NORMAL_ENCODINGS",
              {{"signed", LIMPID_NORMAL_SIGNED},
               {"unorm", LIMPID_NORMAL_UNORM},

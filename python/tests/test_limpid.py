@@ -261,13 +261,13 @@ class ShapeTest(unittest.TestCase):
             self.denoiser.denoise(**still(), view=np.zeros((4, 4)))
         self.assertIn("singular", str(caught.exception))
         with self.assertRaises(limpid.Error):
-            self.denoiser.denoise(**still(), outputs=("radiance",))  # SVGF and nano only
+            self.denoiser.denoise(**still(), outputs=("radiance",))  # SVGF and what goes on from it only
         self.denoiser.denoise(**still())  # an error must not end the sequence
 
 
 class ParameterTest(unittest.TestCase):
     def test_every_parameter_has_its_default_and_can_be_set(self):
-        for method in ("svgf", "atrous", "temporal", "bilateral", "visibility", "nano"):
+        for method in ("svgf", "atrous", "temporal", "bilateral", "visibility", "nano", "film"):
             denoiser = limpid.Denoiser(8, 8, method, device=device())
             self.assertEqual(denoiser.parameters(), limpid.parameters(method))
             self.assertGreater(len(denoiser.parameters()), 3)
@@ -300,7 +300,7 @@ class ParameterTest(unittest.TestCase):
 
 class DenoiseTest(unittest.TestCase):
     def test_sequence_comes_closer_to_the_truth(self):
-        for method in ("svgf", "atrous", "temporal", "nano"):
+        for method in ("svgf", "atrous", "temporal", "nano", "film"):
             with self.subTest(method):
                 self.assertGreater(Sequence().run(limpid.Denoiser(WIDTH, HEIGHT, method, device=device())), 6.0)
 
@@ -377,7 +377,7 @@ class DenoiseTest(unittest.TestCase):
 
     def test_outputs_of_two_signals_add_up(self):
         inputs = still()
-        for method in ("svgf", "nano"):
+        for method in ("svgf", "nano", "film"):
             results = limpid.denoise(**inputs, specular=0.5 * inputs["radiance"], demodulated=True, device=device(),
                                      method=method, outputs=("color", "radiance", "specular"))
             self.assertEqual(list(results), ["color", "radiance", "specular"])

@@ -11,8 +11,8 @@
 
 namespace limpid::shot {
 
-/// Whether what a filter took away besides noise comes back; recover/recovery.h. Auto: by SVGF and nano, in
-/// files whose pixels have independent noise.
+/// Whether what a filter took away besides noise comes back; recover/recovery.h. Auto: by SVGF, nano and
+/// film, in files whose pixels have independent noise.
 enum class Recover { Auto, On, Off };
 
 /// How the pictures are denoised.

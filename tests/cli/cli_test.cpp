@@ -22,6 +22,9 @@ TEST_F(CliTest, WrongUsageIsExitCode2) {
     expect("render builtin:cornell -o " + path("a.png") +
                " --width 3840 --height 2160 --frames 1 --denoiser nano --device cpu",
            2, "too many for the denoiser 'nano'");
+    expect("render builtin:cornell -o " + path("a.png") +
+               " --width 1920 --height 1080 --frames 1 --denoiser film --device cpu",
+           2, "too many for the denoiser 'film'");
     expect("render none.gltf -o " + path("a.png") + " --width 16384 --height 16384 --device cpu", 2,
            " in an image");
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--set pathtrace.max_depth=x", 2,

@@ -1,5 +1,5 @@
-// The method `nano`: its light against the version in double precision, which is given what the device stored
-// of SVGF's stages in the same frame, and what its users rely on.
+// The methods `nano` and `film`: their light against the version in double precision, which is given what the
+// device stored of SVGF's stages in the same frame, and what their users rely on.
 #include "denoise/methods/nano/nano.h"
 
 #include <gmock/gmock.h>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/half.h"
+#include "denoise/methods/film/film_network.h"
 #include "denoise/methods/nano/nano_network.h"
 #include "denoise/stages/ingest/ingest.h"
 #include "tests/denoise/denoise_fixture.h"
@@ -44,6 +45,7 @@ enum class Change {
 
 struct Case {
     const char* name = "";
+    std::string method = "nano";
     SyntheticOptions options{.cameraMoves = true, .objectMoves = true};
     uint32_t columns = 37, rows = 23;
     bool separate = true;
@@ -139,7 +141,9 @@ struct Layer {
 
 class NanoTest : public DenoiseTest {
   protected:
-    static const denoise::Denoiser& nano() { return *denoise::findDenoiser("nano"); }
+    const denoise::Denoiser& method() { return *denoise::findDenoiser(method_); }
+    bool isFilm() const { return method_ == "film"; }
+    std::string pass(const std::string& name) const { return method_ + "/" + name; }
 
     std::vector<dvec3> stable(const std::string& pass, const std::string& nameEnd) {
         std::vector<dvec3> result;
@@ -149,7 +153,7 @@ class NanoTest : public DenoiseTest {
     }
     /// The light of a signal.
     std::vector<dvec4> result(size_t signal) {
-        return download("nano/filter 0", signal == 0 ? "nano/diffuse" : "nano/specular");
+        return download(pass("filter 0"), pass(signal == 0 ? "diffuse" : "specular"));
     }
 
     bool hasMatrices() { return device().info().cooperativeMatrices; }
@@ -166,6 +170,7 @@ class NanoTest : public DenoiseTest {
     void compareStable(const NanoFrame& frame, const std::string& signal, size_t number);
     void comparePicture(const HostFrame& frame, const DenoiserSettings& settings);
 
+    std::string method_ = "nano";
     Rms changes_, lights_;  ///< of all frames: how far the light is from SVGF's, and the light
 };
 
@@ -188,13 +193,13 @@ NanoSignal NanoTest::stages(const Signal& signal, const HostFrame& frame, const 
 
 /// What the device stored of the last frame's stages.
 NanoFrame NanoTest::stages(const HostFrame& frame, const DenoiserSettings& settings) {
-    const std::string pass = graph_.imagesWrittenBy("ingest").empty() ? "surfaces" : "ingest";
+    const std::string surfaces = graph_.imagesWrittenBy("ingest").empty() ? "surfaces" : "ingest";
     NanoFrame result{.width = frame.width,
                      .height = frame.height,
                      .camera = frame.camera,
-                     .surfaces = decodeSurfaces(graph_.downloadUint(device(), written(pass, "surfaces"))),
+                     .surfaces = decodeSurfaces(graph_.downloadUint(device(), written(surfaces, "surfaces"))),
                      .signals = {},
-                     .strength = double{settings.nano.strength}};
+                     .strength = double{isFilm() ? settings.film.strength : settings.nano.strength}};
     for (const Signal& signal : signalsOf(settings.svgf))
         result.signals.push_back(stages(signal, frame, settings.svgf));
     return result;
@@ -228,7 +233,7 @@ void NanoTest::compareLight(const NanoFrame& frame, const NanoLight& expected, s
 void NanoTest::compareStable(const NanoFrame& frame, const std::string& signal, size_t number) {
     if (frame.signals[number].past.empty()) return;
     const std::vector<dvec4> light = result(number);
-    const std::vector<dvec3> kept = stable("nano/filter 0", signal + " stable");
+    const std::vector<dvec3> kept = stable(pass("filter 0"), signal + " stable");
     for (size_t p = 0; p < light.size(); ++p) {
         const dvec3 size = glm::abs(dvec3(light[p]));
         const double tolerance = std::max({size.x, size.y, size.z}) / 255.0 + 0x1p-24;
@@ -257,7 +262,8 @@ void NanoTest::comparePicture(const HostFrame& frame, const DenoiserSettings& se
 /// Compares the last frame. With NaN in the light of any stage, the comparisons fail.
 void NanoTest::compare(const HostFrame& frame, const DenoiserSettings& settings) {
     const NanoFrame is = stages(frame, settings);
-    const auto expected = nanoFilter(is, denoise::nanoNetwork().weights);
+    const auto expected = isFilm() ? nanoFilter(is, shapeOfFilm, denoise::filmNetwork().weights)
+                                   : nanoFilter(is, shapeOfNano, denoise::nanoNetwork().weights);
     const std::vector<Signal> signals = signalsOf(settings.svgf);
     for (size_t s = 0; s < signals.size() && !HasFatalFailure(); ++s) {
         SCOPED_TRACE(signals[s].name);
@@ -280,16 +286,17 @@ class NanoCaseTest : public NanoTest, public testing::WithParamInterface<CasePar
 TEST_P(NanoCaseTest, TheLightAgreesWithTheFormulasInDouble) {
     const auto& [c, choice] = GetParam();
     if (choice.matrices && !hasMatrices()) GTEST_SKIP() << withoutMatrices();
+    method_ = c.method;
     filters_ = choice.backing;
     matrices_ = choice.matrices;
     DenoiserSettings settings;
     settings.svgf = c.svgf;
     settings.svgf.separate = c.separate;
-    settings.nano.strength = c.strength;
+    settings.nano.strength = settings.film.strength = c.strength;
     for (int number = 0; number < 4 && !HasFatalFailure(); ++number) {
         SCOPED_TRACE("frame " + std::to_string(number));
         const HostFrame frame = frameOf(c, number);
-        denoise(nano(), frame, settings);
+        denoise(method(), frame, settings);
         compare(frame, settings);
     }
     EXPECT_GT(changes_.get(), 0.01 * lights_.get()) << "else there is nothing to compare";
@@ -309,6 +316,15 @@ INSTANTIATE_TEST_SUITE_P(
                                           .svgf = {.stabilisationAlpha = 1.0f, .levels = 1}}),
                      testing::Values(inImages, inBuffers, withMatrices)),
     nameOf);
+/// What is not of the network is the same as with nano.
+INSTANTIATE_TEST_SUITE_P(Film, NanoCaseTest,
+                         testing::Combine(testing::Values(Case{.name = "FilmOdd", .method = "film"},
+                                                          Case{.name = "FilmJointNans",
+                                                               .method = "film",
+                                                               .separate = false,
+                                                               .change = Change::Nans}),
+                                          testing::Values(inImages, inBuffers, withMatrices)),
+                         nameOf);
 INSTANTIATE_TEST_SUITE_P(
     NotInBuffers, NanoCaseTest,
     testing::Combine(
@@ -332,7 +348,7 @@ TEST_F(NanoTest, WithoutStrengthItIsSvgf) {
     settings.nano.strength = 0.0f;
     std::vector<std::vector<float>> pictures;
     for (int number = 0; number < 4; ++number)
-        pictures.push_back(denoise(nano(), frameOf(c, number), settings));
+        pictures.push_back(denoise(method(), frameOf(c, number), settings));
     graph_.beginFrame();
     graph_.resetHistories();
     for (int number = 0; number < 4; ++number) {
@@ -345,7 +361,7 @@ TEST_F(NanoTest, WithoutStrengthItIsSvgf) {
 std::vector<Layer> NanoTest::layers(const Case& c) {
     graph_.beginFrame();
     graph_.resetHistories();
-    denoise(nano(), frameOf(c, 0));
+    denoise(method(), frameOf(c, 0));
     std::vector<Layer> result;
     for (const gpu::RecordedPass& pass : graph_.passes()) {
         if (pass.shader.find("nano_convolve") == std::string::npos &&
@@ -364,8 +380,11 @@ std::vector<Layer> NanoTest::layers(const Case& c) {
 TEST_F(NanoTest, MatricesComputeTheSameChannels) {
     if (!hasMatrices()) GTEST_SKIP() << withoutMatrices();
     constexpr double rounding = 2e-3;
-    for (const Case& c : {Case{.columns = 83, .rows = 50}, Case{.columns = 5, .rows = 3},
-                          Case{.columns = 17, .rows = 300}, Case{.columns = 300, .rows = 150}}) {
+    for (const Case& c :
+         {Case{.columns = 83, .rows = 50}, Case{.columns = 5, .rows = 3}, Case{.columns = 17, .rows = 300},
+          Case{.columns = 300, .rows = 150}, Case{.method = "film", .columns = 83, .rows = 50},
+          Case{.method = "film", .columns = 300, .rows = 150}}) {
+        method_ = c.method;
         matrices_ = false;
         const std::vector<Layer> expected = layers(c);
         matrices_ = true;
@@ -397,7 +416,7 @@ TEST_F(NanoTest, ConstantLightStays) {
                 frame.diffuse[i] = 0.5f * std::max(separate ? albedo : albedo + other, 0.01f);
                 frame.specular[i] = separate ? 0.25f * std::max(other, 0.01f) : 0.0f;
             }
-            denoise(nano(), frame, settings);
+            denoise(method(), frame, settings);
             for (size_t s = 0; s < (separate ? 2 : 1); ++s) {
                 const double light = s == 0 ? 0.5 : 0.25;
                 for (const dvec4& texel : result(s))
@@ -435,7 +454,7 @@ TEST_F(NanoTest, DoesWithoutEachOptionalInput) {
             graph_.beginFrame();
             Input input = denoise::upload(graph_, frame);
             input.*lacking.image = {};
-            output_ = nano().record(graph_, input, settings, networks_);
+            output_ = method().record(graph_, input, settings, networks_);
             graph_.execute(device());
             if (lacking.image == &Input::emission) std::ranges::fill(frame.emission, 0.0f);
             if (lacking.image == &Input::albedoSpecular) frame.albedoSpecular.clear();
@@ -467,8 +486,8 @@ TEST_F(NanoTest, TakesWhatTheLibraryGives) {
         params.width = extent.width;
         params.height = extent.height;
         params.farDepth = 1e9f;
-        output_ = nano().record(graph_, denoise::ingest(graph_, images, params, {.twoSignals = true}), {},
-                                networks_);
+        output_ = method().record(graph_, denoise::ingest(graph_, images, params, {.twoSignals = true}), {},
+                                  networks_);
         graph_.execute(device());
         std::ranges::fill(frame.albedo, 1.0f);
         std::ranges::fill(frame.albedoSpecular, 1.0f);
@@ -483,10 +502,10 @@ TEST_F(NanoTest, SharedMemoryChangesNothing) {
     gpu::FrameGraph shared({.shareMemory = true});
     for (int number = 0; number < 3; ++number) {
         const HostFrame frame = frameOf(c, number);
-        const std::vector<float> alone = denoise(nano(), frame);
+        const std::vector<float> alone = denoise(method(), frame);
         shared.beginFrame();
         const gpu::ImageHandle beauty =
-            nano().record(shared, denoise::upload(shared, frame), {}, networks_).beauty;
+            method().record(shared, denoise::upload(shared, frame), {}, networks_).beauty;
         shared.execute(device());
         EXPECT_EQ(shared.downloadFloat(device(), beauty), alone) << number;
         EXPECT_LT(shared.imageBytes(), graph_.imageBytes()) << number;
@@ -497,7 +516,7 @@ TEST_F(NanoTest, MemoryStaysTheSame) {
     const HostFrame frame = frameOf({.columns = 17, .rows = 15}, 1);
     uint64_t bytes = 0;
     for (int number = 0; number < 50; ++number) {
-        denoise(nano(), frame);
+        denoise(method(), frame);
         if (number == 0) bytes = graph_.imageBytes();
         ASSERT_EQ(graph_.imageBytes(), bytes) << number;
     }

@@ -30,6 +30,7 @@ int main(void) {
     VALUE(LIMPID_METHOD_BILATERAL);
     VALUE(LIMPID_METHOD_VISIBILITY);
     VALUE(LIMPID_METHOD_NANO);
+    VALUE(LIMPID_METHOD_FILM);
     printf("enum limpid_input %zu\n", sizeof(limpid_input));
     VALUE(LIMPID_INPUT_RADIANCE);
     VALUE(LIMPID_INPUT_SPECULAR);

@@ -197,18 +197,20 @@ const Variant oneSignal{"--denoiser svgf --set svgf.separate=off", LIMPID_METHOD
     nanoOfOne{"--denoiser nano --set svgf.separate=off --set nano.strength=0.5",
               LIMPID_METHOD_NANO,
               1,
-              {{"nano.strength", 0.5}}};
+              {{"nano.strength", 0.5}}},
+    film{"--denoiser film", LIMPID_METHOD_FILM, 2, {}};
 
 TEST_F(EmbedFilesTest, GivesThePicturesOfTheProgramBitForBit) {
     roundCameras();
     roundGuides();
     // Not bilateral: it reads normals that have been packed once more.
     for (const Variant& variant :
-         {oneSignal, twoSignals, otherParameters, atrous, temporal, nano, nanoOfOne}) {
+         {oneSignal, twoSignals, otherParameters, atrous, temporal, nano, nanoOfOne, film}) {
         const Difference difference = differenceOf(variant);
         // The program multiplies matrices where the device can; the library does not on a device of the
         // caller's.
-        const bool otherSums = variant.method == LIMPID_METHOD_NANO && device().info().cooperativeMatrices;
+        const bool network = variant.method == LIMPID_METHOD_NANO || variant.method == LIMPID_METHOD_FILM;
+        const bool otherSums = network && device().info().cooperativeMatrices;
         if (otherSums)
             EXPECT_LT(difference.largest, 0.05) << variant.options;
         else

@@ -94,8 +94,10 @@ double rmsDifference(const std::vector<float>& a, const std::vector<float>& b) {
     return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-TEST_F(HostFramesTest, SvgfAndNanoAreTheSameInsideAndOutside) {
-    for (const auto& [method, name] : {std::pair{LIMPID_METHOD_SVGF, "svgf"}, {LIMPID_METHOD_NANO, "nano"}}) {
+TEST_F(HostFramesTest, SvgfAndNetworksAreTheSameInsideAndOutside) {
+    for (const auto& [method, name] : {std::pair{LIMPID_METHOD_SVGF, "svgf"},
+                                       {LIMPID_METHOD_NANO, "nano"},
+                                       {LIMPID_METHOD_FILM, "film"}}) {
         SCOPED_TRACE(name);
         create(method);
         const SyntheticScene scene({.objectMoves = true});
@@ -375,6 +377,10 @@ TEST_F(HostFramesTest, MemoryIsKnownBeforehand) {
     desc.method = LIMPID_METHOD_NANO;
     ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &nano), LIMPID_OK);
     EXPECT_GT(nano, two);
+    uint64_t film = 0;
+    desc.method = LIMPID_METHOD_FILM;
+    ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &film), LIMPID_OK);
+    EXPECT_GT(film, nano);
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST_P(EveryPassTest, Runs) {
         }
     }
     for (const char* part : {"gbuffer", "ambient_occlusion", "accumulate/", "pathtrace", "deform", "tonemap",
-                             "temporal", "atrous", "svgf", "nano", "kpcn", "taa", "compose"}) {
+                             "temporal", "atrous", "svgf", "nano", "film", "kpcn", "taa", "compose"}) {
         EXPECT_TRUE(std::ranges::any_of(
             run_, [&](const std::string& pass) { return pass.find(part) != std::string::npos; }))
             << part << " did not run";

@@ -11,8 +11,6 @@ namespace limpid::test {
 namespace {
 
 constexpr size_t levelCount = 5;
-constexpr std::array<size_t, levelCount> widths{16, 32, 48, 64, 64};  ///< channels
-constexpr std::array<size_t, levelCount> depths{0, 1, 2, 2, 2};       ///< 3x3 layers on the way down
 constexpr std::array<int64_t, levelCount> kernelEdges{5, 3, 3, 3, 3};
 constexpr size_t featureCount = 24;
 constexpr int64_t multiple = 16;  ///< of pixels, to which pictures are padded
@@ -71,7 +69,8 @@ size_t logitsAt(size_t level) {
     return level == 0 ? 64 : 32;
 }
 
-std::array<Level, levelCount> networkOf(std::span<const std::byte> bytes) {
+std::array<Level, levelCount> networkOf(const NanoShapeOf& shape, std::span<const std::byte> bytes) {
+    const auto& [widths, depths] = shape;
     Weights weights(bytes);
     std::array<Level, levelCount> levels;
     for (size_t i = 0; i < levelCount; ++i) {
@@ -372,9 +371,10 @@ Lights filteredLight(const Padded& padded, const NanoSignal& signal, const std::
 
 }  // namespace
 
-std::array<NanoLight, 2> nanoFilter(const NanoFrame& frame, std::span<const std::byte> weights) {
+std::array<NanoLight, 2> nanoFilter(const NanoFrame& frame, const NanoShapeOf& shape,
+                                    std::span<const std::byte> weights) {
     const Padded padded(frame);
-    const std::vector<Map> logits = runNetwork(featuresOf(padded, frame), networkOf(weights));
+    const std::vector<Map> logits = runNetwork(featuresOf(padded, frame), networkOf(shape, weights));
     std::array<NanoLight, 2> result;
     for (size_t s = 0; s < frame.signals.size(); ++s) {
         const NanoSignal& signal = frame.signals[s];

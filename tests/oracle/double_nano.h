@@ -1,6 +1,6 @@
-// The network and the filter of the denoiser `nano` in double precision, written only from the formulas of
-// docs/nano.md and of the program that trained it. It starts from what SVGF's stages stored. Nothing is
-// rounded.
+// The networks and the filter of the denoisers `nano` and `film` in double precision, written only from the
+// formulas of docs/nano.md, docs/film.md and of the program that trained them. They start from what SVGF's
+// stages stored. Nothing is rounded.
 #pragma once
 
 #include <array>
@@ -13,6 +13,13 @@
 #include "tests/oracle/svgf/double_svgf.h"
 
 namespace limpid::test {
+
+/// By level, from the finest on: channels, and 3x3 layers on the way down.
+struct NanoShapeOf {
+    std::array<size_t, 5> widths, depths;
+};
+inline constexpr NanoShapeOf shapeOfNano{{16, 32, 48, 64, 64}, {0, 1, 2, 2, 2}};
+inline constexpr NanoShapeOf shapeOfFilm{{48, 96, 128, 128, 128}, {1, 2, 2, 2, 2}};
 
 /// What SVGF's stages stored of one signal: light without albedo, row 0 first.
 struct NanoSignal {
@@ -41,6 +48,7 @@ struct NanoLight {
 };
 
 /// `weights`: halves, in the order of nano_network.h.
-std::array<NanoLight, 2> nanoFilter(const NanoFrame& frame, std::span<const std::byte> weights);
+std::array<NanoLight, 2> nanoFilter(const NanoFrame& frame, const NanoShapeOf& shape,
+                                    std::span<const std::byte> weights);
 
 }  // namespace limpid::test

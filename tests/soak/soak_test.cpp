@@ -33,7 +33,7 @@ using studio::Request;
 constexpr const char* token = "soak";
 constexpr std::array scenes{"builtin:cornell", "builtin:lab-mirror", "builtin:cornell-moving",
                             "builtin:lab-textures"};
-constexpr std::array denoisers{"svgf", "nano", "atrous", "temporal", "none", "bilateral"};
+constexpr std::array denoisers{"svgf", "nano", "film", "atrous", "temporal", "none", "bilateral"};
 
 uint64_t wantedFrames() {
     const char* const text = std::getenv("LIMPID_SOAK_FRAMES");

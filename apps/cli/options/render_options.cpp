@@ -198,9 +198,10 @@ void addOutputOptions(CLI::App& command, RenderOptions& o) {
 void addSamplingOptions(CLI::App& command, RenderOptions& o) {
     const OptionGroup group(command, "Sampling");
     command
-        .add_option("--spp", o.samples,
-                    "Samples per pixel (64), with a denoiser per pixel and frame (1; kpcn 32); more is less "
-                    "noisy and slower")
+        .add_option(
+            "--spp", o.samples,
+            "Samples per pixel (64), with a denoiser per pixel and frame (1; film 16, kpcn 32); more is "
+            "less noisy and slower")
         ->check(CLI::Range(1, 1 << 24));
     command
         .add_option("--samples-per-launch", o.samplesPerLaunch,
@@ -276,7 +277,7 @@ RenderSettings settingsOf(const RenderOptions& o) {
     settings.seed = o.seed;
     settings.samplesPerLaunch = o.samplesPerLaunch;
     settings.pipeline = pipelineOf(o);
-    settings.jitter = defaultJitter(settings.pipeline);
+    settings.jitter = defaultJitter(settings.pipeline, samplesOf(o));
     settings.layers = !o.layers.empty();
     applyPreset(settings, o.preset);
     if (!o.jitter.empty()) settings.jitter = parseJitter(o.jitter);
@@ -293,7 +294,7 @@ uint64_t samplesOf(const RenderOptions& o) {
     if (o.samples > 0) return o.samples;
     const Pipeline pipeline = pipelineOf(o);
     if (pipeline.accumulates()) return 64;
-    return pipeline.usesNetwork() ? 32 : 1;
+    return pipeline.denoiser->samples;
 }
 
 bool writesSums(const RenderOptions& o) {

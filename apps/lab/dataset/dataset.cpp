@@ -20,7 +20,7 @@
 #include "cli/console/progress.h"
 #include "cli/options/device_options.h"
 #include "cli/options/long_render_options.h"
-#include "denoise/methods/nano/nano_network.h"
+#include "denoise/methods/film/film_network.h"
 #include "lab/dataset/dataset_clip.h"
 #include "lab/dataset/dataset_example.h"
 #include "lab/dataset/dataset_motion.h"
@@ -66,10 +66,12 @@ uint32_t numberFrom(uint32_t seed, std::string_view purpose, uint64_t index) {
     return static_cast<uint32_t>(x ^ (x >> 31));
 }
 
-/// A checksum of the network's weights, on which the clips' past depends.
-std::string weightsOfNano() {
+/// A checksum of the weights of the network that filters the clips, on which their past depends; empty if
+/// none does.
+std::string weightsOf(const std::string& denoiser) {
+    if (denoiser == "svgf") return "";
     Hash64 hash;
-    hash.add(denoise::nanoNetwork().weights);
+    hash.add((denoiser == "film" ? denoise::filmNetwork() : denoise::nanoNetwork()).weights);
     return hashText(hash.value());
 }
 
@@ -156,13 +158,14 @@ class Dataset {
                     {"reference_samples", o_.example.referenceSamples}};
         if (o_.sharePipelines) result["share_pipelines"] = true;  // uses up other random numbers
         if (!o_.sequence.empty()) {
-            result["version"] = 4;
+            result["version"] = 5;
             result["sequence"] = o_.sequence;
             result["picture_height"] = o_.pictureHeight;
             result["denoiser"] = o_.denoiser;
             result["moving"] = o_.moving;
             result["night"] = o_.night;
-            if (o_.denoiser == "nano") result["weights"] = weightsOfNano();
+            if (const std::string weights = weightsOf(o_.denoiser); !weights.empty())
+                result["weights"] = weights;
         }
         return result;
     }
@@ -296,6 +299,13 @@ class Dataset {
         return result;
     }
 
+    /// Through the centres, as in real time, or, with several samples, anywhere in the pixels, as renderers
+    /// of films do. (Frames that are shifted would not fit their references.)
+    Jitter jitterOfClip(uint64_t example) const {
+        return o_.example.samples.front() > 1 && fraction("jitter", example) < 0.5 ? Jitter::Pixel
+                                                                                   : Jitter::Off;
+    }
+
     /// Whether random clips may have other lights than their scenes.
     bool variesLight() const { return o_.moving > 0.0 || o_.night > 0.0; }
 
@@ -307,6 +317,7 @@ class Dataset {
                               .samples = o_.example.samples.front(),
                               .referenceSamples = o_.example.referenceSamples,
                               .seed = numberFrom(o_.example.seed, "samples", example),
+                              .jitter = jitterOfClip(example),
                               .denoiser = o_.denoiser};
         constexpr std::array paths{"orbit", "dolly", "shake"};
         const std::string path = paths[numberFrom(o_.example.seed, "path", example) % paths.size()];
@@ -319,6 +330,7 @@ class Dataset {
         return {{"name", nameOf(example)},
                 {"scene", sceneOf(example)},
                 {"camera_path", path},
+                {"jitter", settings.jitter == Jitter::Pixel ? "pixel" : "off"},
                 {"frames_per_second", timing.framesPerSecond},
                 {"start", timing.start}};
     }
@@ -415,9 +427,9 @@ void addClipOptions(CLI::App& command, DatasetOptions& o) {
         ->check(CLI::Range(1, 16384));
     command
         .add_option("--denoiser", o.denoiser,
-                    "With --sequence: what filters the clips, so that it is also their past: svgf or nano "
-                    "(svgf)")
-        ->check(CLI::IsMember({"svgf", "nano"}));
+                    "With --sequence: what filters the clips, so that it is also their past: svgf, nano or "
+                    "film (svgf)")
+        ->check(CLI::IsMember({"svgf", "nano", "film"}));
     command
         .add_option("--moving", o.moving,
                     "With --sequence: share of the random clips in which objects or lights move, or lights "

@@ -105,8 +105,7 @@ RenderSettings noisySettings(const ClipSettings& settings) {
     RenderSettings render;
     render.extent = settings.extent;
     render.seed = settings.seed;
-    // References go through the pixels' centres, and a shifted picture is none of them.
-    render.jitter = Jitter::Off;
+    render.jitter = settings.jitter;
     render.pipeline = parsePipeline("path", settings.denoiser);
     render.samplesPerLaunch = settings.samples;
     render.layers = true;

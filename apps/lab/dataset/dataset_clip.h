@@ -19,7 +19,8 @@ struct ClipSettings {
     uint32_t samples = 1;                       ///< per pixel and frame
     uint32_t referenceSamples = 1024;           ///< of each of both references
     uint32_t seed = 0;
-    std::string denoiser = "svgf";  ///< or "nano"
+    Jitter jitter = Jitter::Off;    ///< or Pixel, for several samples
+    std::string denoiser = "svgf";  ///< or "nano", "film"
 };
 
 /// Renders the frames from 0 on, filters them by the denoiser with its defaults, and adds tensors (channels,
@@ -35,8 +36,8 @@ struct ClipSettings {
 /// - "NAME/F/LAYER" with the layers albedo, albedoSpecular, emission, normal (3), motion (2; 65504: none),
 ///   depth, roughness (1);
 /// - "NAME/F/svgf" (4): the denoiser's picture;
-/// - "NAME/F/reference" (3): clean beauty through the pixels' centres, and "NAME/F/reference2" the same with
-///   noise that is independent of the first one's;
+/// - "NAME/F/reference" (3): clean beauty with the same jitter, and "NAME/F/reference2" the same with noise
+///   that is independent of the first one's;
 /// - "NAME/F/camera" (4, 3; float32): the camera's right, up and forward vectors, and its origin.
 void addClip(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
              const ClipSettings& settings, const std::string& name, neural::TensorFile& file);

@@ -35,6 +35,7 @@ std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     applyPreset(common, o.preset);
     for (const std::string& text : o.assignments) assign(common, text);
     MethodChoice choice = o.methods;
+    choice.samples = o.samples;
     if (!o.preset.empty()) choice.jitter = common.jitter;
     if (o.aliased) choice.jitter = Jitter::Off;  // like the references
     if (!o.jitter.empty()) choice.jitter = parseJitter(o.jitter);

@@ -82,7 +82,7 @@ const std::string& denoiserOf(const std::vector<std::string>& words,
 RenderSettings withDenoiser(RenderSettings settings, const std::string& name, const MethodChoice& choice) {
     settings.pipeline = parsePipeline(nameOf(settings.pipeline.integrator), name);
     if (!settings.pipeline.denoiser) throw UsageError("--denoiser none: it is scored anyway, as 'noisy'");
-    settings.jitter = choice.jitter.value_or(defaultJitter(settings.pipeline));
+    settings.jitter = choice.jitter.value_or(defaultJitter(settings.pipeline, choice.samples));
     return settings;
 }
 

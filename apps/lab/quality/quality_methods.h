@@ -23,7 +23,8 @@ struct MethodChoice {
     std::vector<std::string> variants;
     /// Where the rays of all frames go through their pixels; empty: as each pipeline or preset needs it.
     std::optional<Jitter> jitter;
-    bool steps = false;  ///< SVGF as others have it, without each of its steps, and with former defaults
+    uint32_t samples = 1;  ///< per pixel and frame; decides where the rays go, too
+    bool steps = false;    ///< SVGF as others have it, without each of its steps, and with former defaults
 };
 
 /// Denoisers, variants, steps, in this order; `common` is what all start from, its integrator too. Throws

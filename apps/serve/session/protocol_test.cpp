@@ -57,9 +57,9 @@ TEST(Protocol, SaysWhichDenoisersHaveAPart) {
         return {"there is no such field"};
     };
     EXPECT_THAT(denoisersOf("part.temporal"),
-                testing::UnorderedElementsAre("temporal", "svgf", "nano", "atrous"));
+                testing::UnorderedElementsAre("temporal", "svgf", "nano", "film", "atrous"));
     EXPECT_THAT(denoisersOf("part.spatial"),
-                testing::UnorderedElementsAre("svgf", "nano", "atrous", "bilateral"));
+                testing::UnorderedElementsAre("svgf", "nano", "film", "atrous", "bilateral"));
     EXPECT_THAT(denoisersOf("seed"), testing::IsEmpty());
 }
 

@@ -26,10 +26,10 @@ constexpr std::array<std::string_view, 2> kpcnGroups{"kpcn", "taa"};
 
 #define LIMPID_ROW(method)                                                              \
     Denoiser{#method, method::help,       recordFilter<method::record>, method::groups, \
-             false,   method::oneChannel, method::keepsHistory},
+             false,   method::oneChannel, method::keepsHistory,         method::samples},
 constexpr std::array all{LIMPID_METHODS(LIMPID_ROW) Denoiser{
     "kpcn", "kernels predicted by a trained network: each frame by itself, of about 32 samples", recordKpcn,
-    kpcnGroups, true}};
+    kpcnGroups, true, false, false, 32}};
 #undef LIMPID_ROW
 
 }  // namespace

@@ -43,6 +43,7 @@ struct Denoiser {
     bool network = false;     ///< needs one of DenoiserNetworks, and frames with variances of several samples
     bool oneChannel = false;  ///< Method::oneChannel
     bool keepsHistory = false;  ///< Method::keepsHistory
+    uint32_t samples = 1;       ///< Method::samples
 };
 
 std::span<const Denoiser> denoisers();

@@ -20,7 +20,8 @@ static_assert(methodNames[LIMPID_METHOD_SVGF] == "svgf" && methodNames[LIMPID_ME
               methodNames[LIMPID_METHOD_TEMPORAL] == "temporal" &&
               methodNames[LIMPID_METHOD_BILATERAL] == "bilateral" &&
               methodNames[LIMPID_METHOD_VISIBILITY] == "visibility" &&
-              methodNames[LIMPID_METHOD_NANO] == "nano" && methodNames.size() == LIMPID_METHOD_NANO + 1);
+              methodNames[LIMPID_METHOD_NANO] == "nano" && methodNames[LIMPID_METHOD_FILM] == "film" &&
+              methodNames.size() == LIMPID_METHOD_FILM + 1);
 
 /// Calls `visit(table, settings)` for each group that the method reads.
 template <typename Settings, typename Visit>

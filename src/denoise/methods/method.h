@@ -8,10 +8,12 @@
 //     inline constexpr bool readsLayers = ...;        record() reads normal or depth, not only the surfaces
 //     inline constexpr bool oneChannel = ...;         filters visibility, not light
 //     inline constexpr bool keepsHistory = ...;       accumulates light over frames, along the motion
+//     inline constexpr uint32_t samples = ...;        what it is made for, per pixel and frame
 //     DenoiserOutput record(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 

@@ -10,6 +10,7 @@ std::span<const Method> methods() {
            method::readsLayers,  \
            method::oneChannel,   \
            method::keepsHistory, \
+           method::samples,      \
            method::record},
     static constexpr std::array all{LIMPID_METHODS(LIMPID_ROW)};
 #undef LIMPID_ROW

@@ -25,6 +25,7 @@ struct Method {
     bool readsLayers;   ///< normal or depth, not only the surfaces
     bool oneChannel;    ///< filters visibility, the first component of diffuse and emission; not light
     bool keepsHistory;  ///< accumulates light over frames, along the motion
+    uint32_t samples;   ///< what it is made for, per pixel and frame
     /// Records one frame.
     DenoiserOutput (*record)(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
 };

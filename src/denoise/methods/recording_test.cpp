@@ -2,8 +2,11 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "base/error.h"
+#include "denoise/methods/film/film_network.h"
 #include "denoise/methods/methods.h"
 #include "denoise/stages/ingest/ingest.h"
 #include "denoise/stages/output/output.h"
@@ -85,22 +88,58 @@ TEST(RecordingTest, NanoIsSvgfWithMorePassesBeforeTheLast) {
     EXPECT_EQ(names.back(), "svgf/compose");
 }
 
-TEST(RecordingTest, NanoMultipliesMatricesWhereTheDeviceCan) {
-    for (const bool matrices : {false, true}) {
-        gpu::FrameGraph graph;
-        passesOf(graph, {}, false, nano::record, matrices);
-        size_t byMatrices = 0, others = 0;
-        for (const gpu::RecordedPass& pass : graph.passes()) {
-            byMatrices += pass.shader.find("_matrix") != std::string::npos ? 1 : 0;
-            others += pass.shader.find("nano_convolve") != std::string::npos ? 1 : 0;
+TEST(RecordingTest, NetworksMultiplyMatricesWhereTheDeviceCan) {
+    for (const auto& [record, layers] : {std::pair{Record{nano::record}, 19u}, {Record{film::record}, 21u}}) {
+        for (const bool matrices : {false, true}) {
+            gpu::FrameGraph graph;
+            passesOf(graph, {}, false, record, matrices);
+            size_t byMatrices = 0, others = 0;
+            for (const gpu::RecordedPass& pass : graph.passes()) {
+                byMatrices += pass.shader.find("_matrix") != std::string::npos ? 1 : 0;
+                others += pass.shader.find("nano_convolve") != std::string::npos ? 1 : 0;
+            }
+            EXPECT_EQ(byMatrices, matrices ? layers : 0u);
+            EXPECT_EQ(others, matrices ? 0u : layers);
         }
-        EXPECT_EQ(byMatrices, matrices ? 19u : 0u);
-        EXPECT_EQ(others, matrices ? 0u : 19u);
+    }
+}
+
+/// What the arrays of nano_matrix.glsl and of the shaders that include it take.
+uint32_t sharedBytes(const NanoShare& share, uint32_t groups, uint32_t taps) {
+    const uint32_t subgroups = share.small ? NANO_SMALL_SUBGROUPS : NANO_SUBGROUPS;
+    const uint32_t pitch = 3, line = 2 * share.tiles + 1, patch = NANO_COLUMNS * pitch;
+    const bool around = taps == NANO_AROUND;
+    const uint32_t inputs = around ? 9 * 16 : 8 * groups;  // whose weights are there at once
+    const uint32_t pixels = around ? (NANO_COLUMNS + 2) * (subgroups * share.rows + 2) * pitch : 0;
+    return 16 * (inputs * line + 16 * line + pixels + subgroups * (around ? 1 : 4) * patch);
+}
+
+void expectFits(const NanoShare& share, const NanoLayer& layer, uint32_t taps) {
+    ASSERT_GT(share.tiles, 0u);
+    EXPECT_EQ(layer.outputs % (2 * share.tiles), 0u);
+    EXPECT_EQ(layer.inputs % 2, 0u);
+    const uint32_t groups = (taps == NANO_HALVE ? 4 : 1) * layer.inputs + layer.coarser;
+    EXPECT_LE(sharedBytes(share, groups, taps), 48u * 1024u);
+}
+
+/// Devices with matrices have at least as much (DeviceInfo::cooperativeMatrices).
+TEST(RecordingTest, MatricesFitIntoSharedMemory) {
+    for (const NanoNetwork* network : {&nanoNetwork(), &filmNetwork()}) {
+        for (size_t i = 0; i < NANO_LEVELS; ++i) {
+            SCOPED_TRACE(network->name + ", level " + std::to_string(i));
+            const NanoLevel& level = network->levels[i];
+            if (i > 0) expectFits(network->shares.halve[i], level.halve, NANO_HALVE);
+            for (const NanoLayer& layer : level.around)
+                expectFits(network->shares.around[i], layer, NANO_AROUND);
+            if (i + 1 == NANO_LEVELS) continue;
+            expectFits(network->shares.around[i], level.after, NANO_AROUND);
+            expectFits(network->shares.point[i], level.join, NANO_POINT);
+        }
     }
 }
 
 TEST(RecordingTest, SignalsAreWrittenWhereTheyAreWanted) {
-    for (const Record record : {Record{svgf::record}, Record{nano::record}}) {
+    for (const Record record : {Record{svgf::record}, Record{nano::record}, Record{film::record}}) {
         for (const bool separate : {true, false}) {
             for (const bool wanted : {true, false}) {
                 gpu::FrameGraph graph;

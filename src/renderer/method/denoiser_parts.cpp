@@ -21,6 +21,7 @@ std::span<const std::string_view> switchesOf(const denoise::Denoiser* denoiser, 
     static const std::vector<Switches> all{
         {"svgf", {{singleFrames, {"svgf.levels=0"}, {"svgf.demodulate=off"}}}},
         {"nano", {{singleFrames, {"svgf.levels=0", "nano.strength=0"}, {"svgf.demodulate=off"}}}},
+        {"film", {{singleFrames, {"svgf.levels=0", "film.strength=0"}, {"svgf.demodulate=off"}}}},
         {"atrous",
          {{{"atrous.temporal=off", "taa.frames=1"},
            {"atrous.levels=0"},

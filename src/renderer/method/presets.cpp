@@ -49,7 +49,7 @@ Preset ambientOcclusionTutorial() {
                 "pixel and frame, a running mean that restarts when anything changes. Difference: primary "
                 "visibility is traced, not rasterised",
             .integrators = {"ao"},
-            .denoisers = {"none", "temporal", "atrous", "svgf", "nano", "kpcn"},
+            .denoisers = {"none", "temporal", "atrous", "svgf", "nano", "film", "kpcn"},
             .jitter = Jitter::Off,
             .assignments = {"ao.rays=1", "ao.radius=0.05", "pathtrace.sampler_sobol=off"}};
 }

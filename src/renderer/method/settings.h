@@ -16,9 +16,11 @@ namespace limpid {
 /// Means of many samples need jitter to cover the pixel, and so do a network's guides. Histories follow one
 /// point: with jitter per pixel, pixels at silhouettes would see another surface in each frame. With one
 /// point for all pixels, their last step averages frames to smooth edges (TaaSettings). A filter of single
-/// frames does not, and frames that are jittered would only shake.
-inline Jitter defaultJitter(const Pipeline& pipeline) {
+/// frames does not, and frames that are jittered would only shake. `samples`: per pixel and frame. Where a
+/// history is made for several, their mean smooths edges, as in frames of renderers of films.
+inline Jitter defaultJitter(const Pipeline& pipeline, uint64_t samples = 1) {
     if (pipeline.accumulates() || pipeline.usesNetwork()) return Jitter::Pixel;
+    if (pipeline.denoiser->samples > 1 && samples > 1) return Jitter::Pixel;
     return pipeline.denoiser->keepsHistory ? Jitter::Frame : Jitter::Off;
 }
 

@@ -41,6 +41,7 @@ const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = true;
 inline constexpr bool oneChannel = false;
 inline constexpr bool keepsHistory = true;
+inline constexpr uint32_t samples = 1;
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace atrous
 

@@ -1,9 +1,5 @@
 #include "denoise/methods/nano/nano_matrices.h"
 
-#include <array>
-#include <utility>
-#include <vector>
-
 #include "base/divide_up.h"
 #include "base/error.h"
 #include "nano_around_matrix.comp.h"
@@ -14,35 +10,11 @@
 namespace limpid::denoise {
 namespace {
 
-/// A workgroup's share of a layer, with the names of nano_matrix.glsl. Several workgroups share the outputs
-/// of a pixel if `tiles` is less than their number. All need at most 48 KB of shared memory.
-struct Share {
-    uint32_t tiles, rows, loops = 1;
-    bool small = false;
-};
-
-/// Those that were fastest on an H200 at 1920x1080, by level.
-constexpr std::array<Share, NANO_LEVELS> aroundShares{{{.tiles = 1, .rows = 4, .loops = 4},
-                                                       {.tiles = 2, .rows = 4},
-                                                       {.tiles = 3, .rows = 3},
-                                                       {.tiles = 2, .rows = 2, .small = true},
-                                                       {.tiles = 1, .rows = 1}}};
-constexpr std::array<Share, NANO_LEVELS> pointShares{{{.tiles = 1, .rows = 8, .small = true},
-                                                      {.tiles = 2, .rows = 8, .small = true},
-                                                      {.tiles = 3, .rows = 2},
-                                                      {.tiles = 4, .rows = 1},
-                                                      {}}};
-constexpr std::array<Share, NANO_LEVELS> halveShares{{{},
-                                                      {.tiles = 2, .rows = 8, .small = true},
-                                                      {.tiles = 3, .rows = 2},
-                                                      {.tiles = 2, .rows = 1},
-                                                      {.tiles = 2, .rows = 1}}};
-
 constexpr uint32_t subgroupSize = 32;  // see DeviceInfo::cooperativeMatrices
 
-gpu::Extent threadsOf(const NanoConvolveParams& params, const Share& share) {
+gpu::Extent threadsOf(const NanoConvolveParams& params, const NanoShare& share) {
     if (share.tiles == 0 || params.outputGroups % (2 * share.tiles) != 0 || params.groups % 2 != 0)
-        throw Error("a layer of 'nano' has no shape for matrices");
+        throw Error("a layer has no shape for matrices");
     const uint32_t subgroups = share.small ? NANO_SMALL_SUBGROUPS : NANO_SUBGROUPS;
     const uint32_t blocks = divideUp(params.height, subgroups * share.rows * share.loops);
     return {divideUp(params.width, NANO_COLUMNS) * subgroups * subgroupSize,
@@ -50,7 +22,7 @@ gpu::Extent threadsOf(const NanoConvolveParams& params, const Share& share) {
 }
 
 void around(gpu::FrameGraph& graph, const NanoConvolution& c) {
-    const Share& share = aroundShares[c.level];
+    const NanoShare& share = c.share;
     graph.dispatch(
         {.pass = c.pass,
          .shader = share.small ? shaders::nano_around_matrix_small_comp : shaders::nano_around_matrix_comp,
@@ -65,7 +37,7 @@ void around(gpu::FrameGraph& graph, const NanoConvolution& c) {
 
 void within(gpu::FrameGraph& graph, const NanoConvolution& c) {
     const bool halves = c.taps == NANO_HALVE;
-    const Share& share = (halves ? halveShares : pointShares)[c.level];
+    const NanoShare& share = c.share;
     const uint32_t groups = halves ? 4 * c.params.groups : c.params.groups + c.params.coarserGroups;
     graph.dispatch(
         {.pass = c.pass,

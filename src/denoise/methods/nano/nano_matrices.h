@@ -1,17 +1,17 @@
-// The convolutions of `nano` on cooperative matrices, where a device has them: about five times as fast.
+// The convolutions of `nano` and `film` on cooperative matrices, where a device has them: about five times as
+// fast.
 #pragma once
 
-#include <cstddef>
 #include <string>
 
-#include "denoise/methods/nano/nano_params.h"
+#include "denoise/methods/nano/nano_network.h"
 #include "gpu/graph/frame_graph.h"
 
 namespace limpid::denoise {
 
 struct NanoConvolution {
     std::string pass;
-    size_t level = 0;
+    NanoShare share{};
     uint32_t taps = NANO_AROUND;
     NanoConvolveParams params{};
     gpu::ImageHandle inputs, coarser, weights, outputs;  ///< `coarser`: any, if there is none

@@ -1,10 +1,11 @@
-// The layers of `nano`, and their weights, which are part of the library.
+// The layers of a network behind SVGF (`nano`, `film`), and their weights, which are part of the library.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "denoise/methods/nano/nano_params.h"
@@ -28,10 +29,36 @@ struct NanoLevel {
     NanoLayer logits;               ///< outputs: of both signals
 };
 
+/// What tells networks apart, by level.
+struct NanoShape {
+    std::array<uint32_t, NANO_LEVELS> widths;  ///< channels, in groups
+    std::array<uint32_t, NANO_LEVELS> depths;  ///< layers of 3x3 taps on the way down
+};
+
+/// A workgroup's share of a layer on cooperative matrices, with the names of nano_matrix.glsl. Several
+/// workgroups share the outputs of a pixel if `tiles` is less than their number. All need at most 48 KB of
+/// shared memory.
+struct NanoShare {
+    uint32_t tiles = 0, rows = 0, loops = 1;
+    bool small = false;  ///< a workgroup has fewer subgroups
+};
+
+/// By level; the coarsest level has no `point`, the finest no `halve`.
+struct NanoShares {
+    std::array<NanoShare, NANO_LEVELS> around, point, halve;
+};
+
 struct NanoNetwork {
+    std::string name;  ///< its passes' names begin with it
     std::array<NanoLevel, NANO_LEVELS> levels;
+    NanoShares shares;
     std::span<const std::byte> weights;  ///< texels of eight halves
 };
+
+/// `file`: of weights, as training/limpid_training/nano/weights.py writes them. Throws Error if it does not
+/// fit the shape.
+NanoNetwork makeNanoNetwork(const std::string& name, const NanoShape& shape, const NanoShares& shares,
+                            std::span<const uint32_t> file);
 
 const NanoNetwork& nanoNetwork();
 

@@ -8,6 +8,7 @@
 
 layout(constant_id = 0) const bool TWO_SIGNALS = true;   // else the second is black
 layout(constant_id = 1) const bool HAS_PAST = true;      // else the filtered light stands for that of the past
+layout(constant_id = 2) const uint OUTPUT_GROUPS = 2u;   // of the first layer
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     NanoFeaturesParams params;
@@ -127,13 +128,12 @@ void main() {
     const uint index = uint(pixel.y) * params.paddedWidth + uint(pixel.x);
     const bool sees = distanceOf(LOAD_UINT2(surfaces, at)) > 0.0;
     light.texels[index] = packLightPair(LightPair(a.color, b.color, sees));
-    const uint OUTPUTS = 2u;
-    [[unroll]] for (uint group = 0u; group < OUTPUTS; ++group) {
+    [[unroll]] for (uint group = 0u; group < OUTPUT_GROUPS; ++group) {
         Eight sum = unpackEight(weights.texels[group]);
         [[unroll]] for (uint i = 0u; i < NANO_FEATURES; ++i) {
-            const uint at = OUTPUTS + ((i / 8u) * OUTPUTS + group) * 8u + i % 8u;
+            const uint at = OUTPUT_GROUPS + ((i / 8u) * OUTPUT_GROUPS + group) * 8u + i % 8u;
             addProduct(sum, features[i], unpackEight(weights.texels[at]));
         }
-        channels.texels[index * OUTPUTS + group] = packEight(Eight(leaky(sum.low), leaky(sum.high)));
+        channels.texels[index * OUTPUT_GROUPS + group] = packEight(Eight(leaky(sum.low), leaky(sum.high)));
     }
 }

@@ -1,0 +1,1 @@
+set(SOURCES film.cpp film_network.cpp)
