@@ -126,17 +126,20 @@ class NetTest(unittest.TestCase):
         torch.manual_seed(2)
 
     def test_is_the_one_that_the_library_computes(self):
-        net = network.Net()
-        self.assertEqual([net.logits(level) for level in range(5)], [32, 14, 14, 14, 9])
-        self.assertEqual(net.multiplications(), 17588.5)
-        self.assertEqual(sum(weight.numel() for weight in net.parameters()), 328710)
+        for name, multiplications, weights in ("nano", 17588.5, 328710), ("film", 168385, 1781446):
+            net = network.Net(network.SHAPES[name])
+            self.assertEqual(network.name_of(net.shape), name)
+            self.assertEqual([net.logits(level) for level in range(5)], [32, 14, 14, 14, 9])
+            self.assertEqual(net.multiplications(), multiplications)
+            self.assertEqual(sum(weight.numel() for weight in net.parameters()), weights)
+        self.assertIsNone(network.name_of(SMALL))
 
     def test_begins_with_svgf(self):
         share = network.denoise(network.Net(), clips.Frame(nano_clips.make_batch())).share
         self.assertTrue(((share > 0.15) & (share < 0.4)).all())
 
     def test_its_shape_is_known_from_its_weights(self):
-        for shape in network.SHIPPED, SMALL, network.Shape((8, 8, 24), (2, 0, 1), (7, 5, 3)):
+        for shape in *network.SHAPES.values(), SMALL, network.Shape((8, 8, 24), (2, 0, 1), (7, 5, 3)):
             net = network.Net(shape)
             self.assertEqual(network.shape_of(net.state_dict()), shape)
             again = network.network_of(net.state_dict())

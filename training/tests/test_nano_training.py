@@ -196,8 +196,15 @@ class TrainingTest(unittest.TestCase):
         trainer = self.trainer("more", "--steps", "2", "--start", self.path("run"))
         self.assertTrue(equal(trainer.net, before.net) and equal(trainer.average, before.average))
         self.assertEqual((trainer.progress(), trainer.reports), (0, []))
-        trainer = self.trainer("shipped", "--steps", "2", "--start", compare.SHIPPED, shape=())
-        self.assertTrue(equal(trainer.net, weights.network_in(compare.SHIPPED)))
+        trainer = self.trainer("shipped", "--steps", "2", "--start", compare.SHIPPED["nano"], shape=())
+        self.assertTrue(equal(trainer.net, weights.network_in(compare.SHIPPED["nano"])))
+        film = ("--steps", "2", "--start", compare.SHIPPED["film"])
+        trainer = self.trainer("film", *film, "--network", "film", shape=())
+        self.assertEqual(trainer.net.shape, network.SHAPES["film"])
+        self.assertTrue(equal(trainer.net, weights.network_in(compare.SHIPPED["film"])))
+        trainer = self.trainer("film", "--steps", "2", "--network", "film", "--depths", "0,1,2,2,2", shape=())
+        self.assertEqual(trainer.shape, network.SHAPES["film"]._replace(depths=(0, 1, 2, 2, 2)))
+        self.ends(2, "was trained with --widths 48,", self.trainer, "a", *film, shape=())
         self.ends(2, "not allowed with --resume", self.trainer, "run", "--steps", "2", "--resume", "--start", "a")
 
     def test_goes_on_only_with_the_same_network(self):
@@ -285,18 +292,20 @@ class FileTest(unittest.TestCase):
 
     def test_weights_come_back_as_halves(self):
         file = self.path("w.safetensors")
-        export.export(self.save(step=7), file)
-        back = weights.network_in(file).state_dict()
-        self.assertEqual(back.keys(), self.weights.keys())
-        for name, weight in self.weights.items():
-            self.assertTrue(torch.equal(back[name], weight.half().float()), name)
-        _, metadata = tensor_file.read(file)
-        self.assertEqual(metadata["limpid.network"], "nano")
-        self.assertEqual(json.loads(metadata["limpid.training"])["steps"], 7)
+        for network_name, shape in network.SHAPES.items():
+            self.weights = network.Net(shape).state_dict()
+            self.assertEqual(export.export(self.save(step=7), file), network_name)
+            back = weights.network_in(file).state_dict()
+            self.assertEqual(back.keys(), self.weights.keys())
+            for name, weight in self.weights.items():
+                self.assertTrue(torch.equal(back[name], weight.half().float()), name)
+            _, metadata = tensor_file.read(file)
+            self.assertEqual(metadata["limpid.network"], network_name)
+            self.assertEqual(json.loads(metadata["limpid.training"])["steps"], 7)
 
     def test_metadata_tell_of_the_training_and_not_of_the_call(self):
         def told(**state):
-            return json.loads(export.metadata_of(state)["limpid.training"])
+            return json.loads(export.metadata_of("nano", state)["limpid.training"])
 
         self.assertEqual(told(options={"start": "a", "clips": ["b"], "rate": 1})["options"], {"rate": 1})
         self.assertEqual(told(datasets=[{"seed": 1}, {"seed": 2}])["datasets"], [{"seed": 1}, {"seed": 2}])
@@ -310,8 +319,10 @@ class FileTest(unittest.TestCase):
         self.assertTrue(torch.equal(back["heads.4.bias"], torch.ones(18)))
 
     def test_the_shipped_file_is_what_this_code_makes(self):
-        export.export(compare.SHIPPED, self.path("w.safetensors"))
-        self.assertEqual(self.data_of(self.path("w.safetensors")), self.data_of(compare.SHIPPED))
+        for name, shipped in compare.SHIPPED.items():
+            self.assertEqual(export.export(shipped, self.path("w.safetensors")), name)
+            self.assertEqual(self.data_of(self.path("w.safetensors")), self.data_of(shipped), name)
+            self.assertEqual(tensor_file.read(self.path("w.safetensors"))[1]["limpid.network"], name)
 
     def test_numbers_are_where_the_library_reads_them(self):
         """As nano_network.h states it, number by number."""
@@ -356,7 +367,7 @@ class FileTest(unittest.TestCase):
             with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(told):
                 weights.read(output)
             self.assertEqual(ended.exception.code, 3)
-        self.assertIn("has no weights of 'nano'", told.getvalue())
+        self.assertIn("has no weights of 'nano' or 'film'", told.getvalue())
 
 
 if __name__ == "__main__":

@@ -1,1 +1,1 @@
-"""Trains the network of Limpid's denoiser `nano`. docs/nano.md explains how to use this package."""
+"""Trains the networks of Limpid's denoisers `nano` and `film`. docs/nano.md explains how to use this package."""

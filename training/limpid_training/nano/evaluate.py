@@ -50,7 +50,7 @@ def evaluate(net, frames):
     results = []
     for stored in frames:
         frame = clips.Frame(stored.channels[None])
-        made = {"nano": frame.compose(network.denoise(net, frame).light), "svgf": frame.svgf,
+        made = {"network": frame.compose(network.denoise(net, frame).light), "svgf": frame.svgf,
                 "accumulated": frame.compose(frame.accumulated)}
         result = {name: errors_of(picture, frame) for name, picture in made.items()}
         first, second = frame.references
@@ -78,7 +78,7 @@ def ratios(results):
     sums = dict.fromkeys(ERRORS, 0.0)
     groups = by(results, "clip").values()
     for group in groups:
-        ours, svgf = mean_of(group, "nano"), mean_of(group, "svgf")
+        ours, svgf = mean_of(group, "network"), mean_of(group, "svgf")
         for error in ERRORS:
             # Unbiased estimates of errors that are about 0 can be negative.
             sums[error] += math.log(max(ours[error], 1e-9) / max(svgf[error], 1e-9))
@@ -87,7 +87,7 @@ def ratios(results):
 
 def line(results):
     """Returns the mean errors as text: the network's, SVGF's, and by how much they differ."""
-    ours, svgf = mean_of(results, "nano"), mean_of(results, "svgf")
+    ours, svgf = mean_of(results, "network"), mean_of(results, "svgf")
     return "  ".join(f"{error} {ours[error]:.6f}/{svgf[error]:.6f} ({100 * (ours[error] / svgf[error] - 1):+.1f} %)"
                      if svgf[error] else f"{error} {ours[error]:.6f}/0" for error in ERRORS)
 

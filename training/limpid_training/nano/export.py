@@ -1,4 +1,4 @@
-"""Exports the weights of a training run to the file that is built into Limpid's denoiser `nano`.
+"""Exports the weights of a training run to the file that is built into Limpid's denoiser `nano` or `film`.
 
     python3 -m limpid_training.nano.export RUN -o ../weights/nano.safetensors
 
@@ -17,26 +17,30 @@ OF_THE_CALL = ("clips", "output", "device", "resume", "overwrite", "start", "val
                "time_limit")
 
 
-def metadata_of(state):
+def metadata_of(name, state):
     options = {key: value for key, value in state.get("options", {}).items() if key not in OF_THE_CALL}
     # Older checkpoints have one data set.
     datasets = [dataset for dataset in state.get("datasets") or [state.get("dataset")] if dataset]
     training = {"datasets": datasets, "steps": state.get("step"), "seconds": round(state.get("seconds", 0)),
                 "options": options}
-    return {"limpid.network": "nano", "limpid.training": json.dumps(training)}
+    return {"limpid.network": name, "limpid.training": json.dumps(training)}
 
 
 def export(run, output):
+    """Returns the name of the network."""
     state = weights.read(run)
     trained = weights.of_checkpoint(state)
     shape = network.shape_of(trained)
-    if shape != network.SHIPPED:
-        checkpoint.end(f"{run}: has the shape {shape}; Limpid computes only {network.SHIPPED}", checkpoint.USAGE)
+    name = network.name_of(shape)
+    if not name:
+        shapes = ", ".join(f"{known} ({shape})" for known, shape in network.SHAPES.items())
+        checkpoint.end(f"{run}: has the shape {shape}; Limpid computes only {shapes}", checkpoint.USAGE)
     tensors = weights.to_file(trained)
-    for name, tensor in tensors.items():
+    for layer, tensor in tensors.items():
         if not torch.isfinite(tensor).all():
-            raise SystemExit(f"{run}: some of '{name}' are no finite numbers in half precision")
-    tensor_file.write(output, tensors, metadata_of(state), by_name=False)
+            raise SystemExit(f"{run}: some of '{layer}' are no finite numbers in half precision")
+    tensor_file.write(output, tensors, metadata_of(name, state), by_name=False)
+    return name
 
 
 if __name__ == "__main__":
@@ -44,4 +48,4 @@ if __name__ == "__main__":
     parser.add_argument("run", help="output folder of limpid_training.nano.train, or a checkpoint")
     parser.add_argument("-o", "--output", required=True, help="safetensors file to write")
     chosen = parser.parse_args()
-    export(chosen.run, chosen.output)
+    print(f"wrote {chosen.output}: weights of '{export(chosen.run, chosen.output)}'")

@@ -25,8 +25,10 @@ from . import warp
 #: fireflies of the references would otherwise decide the gradient.
 LARGEST_SQUARE = 0.3
 
-#: Added to the squared error by which a frame's loss is divided: frames without an error would otherwise decide.
-LEAST_ERROR = 2e-4
+#: Added to the squared error by which a frame's loss is divided: frames without an error would otherwise decide. About
+#: that error at 16 samples, which is a tenth of that at one. A larger number than most errors would make frames of many
+#: samples count little; those of 64 count less already.
+LEAST_ERROR = 3e-5
 
 #: Of losses. It matters only to train.LARGEST_GRADIENT and to Adam's epsilon: Adam divides by the gradient's size.
 SCALE = 2e-3

@@ -1,4 +1,5 @@
-"""The network of `nano`, and the filter whose weights it predicts. src/denoise/methods/nano computes the same.
+"""The networks of `nano` and `film`, and the filter whose weights they predict. src/denoise/methods/nano computes the
+same.
 
 The network works on several levels: the picture, and pictures of half, a quarter ... of its size. At each level it
 predicts how a pixel's light is averaged from the pixels around and from the filtered coarser level, and at the finest
@@ -37,8 +38,11 @@ FIRST_SVGF = 1.0
 #: Level by level, from the finest on: channels, convolutions of 3x3 on the way down, width of the kernels in pixels.
 Shape = collections.namedtuple("Shape", ("widths", "depths", "kernels"))
 
-#: The only shape that Limpid computes.
-SHIPPED = Shape((16, 32, 48, 64, 64), (0, 1, 2, 2, 2), (5, 3, 3, 3, 3))
+#: The networks that Limpid computes.
+SHAPES = {
+    "nano": Shape((16, 32, 48, 64, 64), (0, 1, 2, 2, 2), (5, 3, 3, 3, 3)),
+    "film": Shape((48, 96, 128, 128, 128), (1, 2, 2, 2, 2), (5, 3, 3, 3, 3)),
+}
 
 #: What apply() computes: light (batch, signals, 3, rows, columns) mixed from SVGF's and its own, its own light, and
 #: the share of that (batch, signals, 1, rows, columns).
@@ -58,7 +62,7 @@ class Net(nn.Module):
     the finest level one for the filter's own result, and one for SVGF's; at all but the coarsest level the logarithm of
     the pixel's weight in the mean that becomes the coarser level's light."""
 
-    def __init__(self, shape=SHIPPED):
+    def __init__(self, shape=SHAPES["nano"]):
         super().__init__()
         self.shape = shape
         widths = shape.widths
@@ -132,6 +136,16 @@ def shape_of(weights):
         others = (COARSE_TAPS + 1 if level + 1 < levels else 0) + (2 if level == 0 else 0)
         kernels.append(round((weights[f"heads.{level}.bias"].numel() / SIGNALS - others) ** 0.5))
     return Shape(tuple(widths), tuple(depths), tuple(kernels))
+
+
+def name_of(shape):
+    """Returns the name of the network that Limpid computes in this shape, or None."""
+    return next((name for name, known in SHAPES.items() if known == shape), None)
+
+
+def names():
+    """Returns the names of the networks, as text for messages."""
+    return " or ".join(f"'{name}'" for name in SHAPES)
 
 
 def network_of(weights):

@@ -1,4 +1,4 @@
-"""Trains the network of `nano` on clips that `limpid dataset --sequence` rendered.
+"""Trains the network of `nano` or `film` on clips that `limpid dataset --sequence` rendered.
 
     python3 -m limpid_training.nano.train CLIPS -o RUN --seconds 600
     torchrun --nproc_per_node 4 -m limpid_training.nano.train CLIPS -o RUN --seconds 600     # on four GPUs
@@ -65,10 +65,11 @@ def parse(arguments=None):
     parser.add_argument("--rate", type=float, default=2e-3, help="the largest learning rate")
     parser.add_argument("--last-rate", type=float, default=2e-4,
                         help="the learning rate at the end; it falls along half a cosine")
+    parser.add_argument("--network", choices=list(network.SHAPES), default="nano", help="whose shape the network has")
     for name, about in (("widths", "channels"), ("depths", "convolutions of 3x3 pixels on the way down"),
                         ("kernels", "width of the kernels, pixels; odd")):
-        parser.add_argument("--" + name, type=numbers, default=getattr(network.SHIPPED, name),
-                            help=about + ", level by level; Limpid computes only the default")
+        parser.add_argument("--" + name, type=numbers,
+                            help=about + ", level by level, if not those of --network; Limpid computes only those")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--start", metavar="FILE",
                         help="begin with the weights and the optimiser's state of a run or a checkpoint, or with a "
@@ -83,6 +84,9 @@ def parse(arguments=None):
                           help="begin anew where the output folder has a checkpoint, and replace it")
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     chosen = parser.parse_args(arguments)
+    for name, value in network.SHAPES[chosen.network]._asdict().items():
+        if getattr(chosen, name) is None:
+            setattr(chosen, name, value)
     if chosen.resume and chosen.start:
         parser.error("--start is not allowed with --resume, which begins with the weights in the output folder")
     if not len(chosen.widths) == len(chosen.depths) == len(chosen.kernels):
@@ -285,7 +289,8 @@ class Trainer:
         if first_worker:
             os.makedirs(options.output, exist_ok=True)
             weights_count = sum(weight.numel() for weight in self.net.parameters())
-            print(f"{weights_count} weights, {self.net.multiplications():.0f} multiplications per pixel; "
+            name = network.name_of(self.shape) or "a network that Limpid does not compute"
+            print(f"{name}: {weights_count} weights, {self.net.multiplications():.0f} multiplications per pixel; "
                   f"{len(self.frames)} frames, {len(self.groups) if self.paired else 0} pairs, "
                   f"{len(self.judged)} frames to validate", flush=True)
         self.before, self.began = self.seconds, time.monotonic()

@@ -74,9 +74,19 @@ def to_file(weights):
     return tensors
 
 
-def from_file(tensors, shape=network.SHIPPED):
-    """Returns the weights of the network by name: the inverse of to_file(), but for the rounding to halves."""
-    expected = network.Net(shape).state_dict()
+def sizes_of(tensors):
+    return {name: tuple(tensor.shape) for name, tensor in tensors.items()}
+
+
+def from_file(tensors):
+    """Returns the weights of the network by name: the inverse of to_file(), but for the rounding to halves. Raises
+    KeyError if the tensors are of no network that Limpid computes."""
+    for shape in network.SHAPES.values():
+        expected = network.Net(shape).state_dict()
+        if sizes_of(to_file(expected)) == sizes_of(tensors):
+            break
+    else:
+        raise KeyError("no network has such tensors")
     weights = {}
     for name, layer, logits in layers_of(shape):
         of_layer = expected[layer + ".weight"].shape
@@ -101,8 +111,8 @@ def read(path):
         return {"net": from_file(tensor_file.read(path)[0])}
     except (OSError, ValueError) as fault:
         checkpoint.end(str(fault), checkpoint.UNREADABLE)
-    except (KeyError, RuntimeError):
-        checkpoint.end(f"{path}: has no weights of 'nano'", checkpoint.UNREADABLE)
+    except KeyError:
+        checkpoint.end(f"{path}: has no weights of {network.names()}", checkpoint.UNREADABLE)
 
 
 def network_in(path):
