@@ -2,19 +2,13 @@
 // the network and how it was trained.
 #pragma once
 
-#include "denoise/methods/method.h"
+#include "denoise/methods/nano/nano_recorder.h"
 
 namespace limpid::denoise {
 
-/// User settings; film::params() gives ranges and descriptions.
-struct FilmSettings {
-    float strength = 1.0f;
-    bool operator==(const FilmSettings&) const = default;
-};
-
 /// The entry in the list of methods (methods.h). Passes: those of nano, with names that begin with "film/".
 namespace film {
-using Settings = FilmSettings;
+using Settings = NetworkSettings;
 inline constexpr std::string_view help =
     "SVGF, and behind it a larger trained network: for stills and films, slow";
 inline constexpr std::array<std::string_view, 3> groups{"film", "svgf", "taa"};

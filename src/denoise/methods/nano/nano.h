@@ -3,20 +3,14 @@
 // how it was trained.
 #pragma once
 
-#include "denoise/methods/method.h"
+#include "denoise/methods/nano/nano_recorder.h"
 
 namespace limpid::denoise {
-
-/// User settings; nano::params() gives ranges and descriptions.
-struct NanoSettings {
-    float strength = 1.0f;
-    bool operator==(const NanoSettings&) const = default;
-};
 
 /// The entry in the list of methods (methods.h). Passes: those of SVGF, with "nano/features" and so on before
 /// "svgf/compose".
 namespace nano {
-using Settings = NanoSettings;
+using Settings = NetworkSettings;
 inline constexpr std::string_view help =
     "SVGF, and behind it a small trained network: cleaner and sharper, slower";
 inline constexpr std::array<std::string_view, 3> groups{"nano", "svgf", "taa"};

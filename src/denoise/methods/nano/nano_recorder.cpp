@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "denoise/methods/methods.h"
 #include "denoise/methods/nano/nano_matrices.h"
 #include "nano_convolve.comp.h"
 #include "nano_features.comp.h"
@@ -246,9 +247,19 @@ class Recorder {
 
 }  // namespace
 
-SvgfLight recordNetwork(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfStages& stages,
-                        const NanoNetwork& network, float strength) {
-    return Recorder(graph, input, stages, network, strength).record();
+ParamTable<NetworkSettings> networkParams(const std::string& method) {
+    using S = NetworkSettings;
+    ParamTable<S> table(method);
+    table.add("strength", &S::strength, 0.0, 1.0, "",
+              "Share of the network's result where it would replace SVGF's; 0 is SVGF alone");
+    return table;
+}
+
+DenoiserOutput recordNetwork(gpu::FrameGraph& graph, const DenoiserInput& input,
+                             const FilterSettings& settings, const NanoNetwork& network, float strength) {
+    const SvgfStages stages = recordSvgfStages(graph, input, settings.svgf);
+    return composeSvgf(graph, input, settings, stages,
+                       Recorder(graph, input, stages, network, strength).record());
 }
 
 }  // namespace limpid::denoise
