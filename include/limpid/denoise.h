@@ -250,9 +250,9 @@ typedef struct limpid_camera {
 /* Creates a denoiser, and compiles its pipelines on several threads if `device` does not have them yet. Its images are
  * created for the first frame; limpid_denoiser_memory() returns their size. `*denoiser` is NULL on failure.
  * LIMPID_ERROR_UNSUPPORTED: the device has no images of this size (its maxImageDimension2D), or no buffers that large
- * (maxStorageBufferRange, maxBufferSize, maxMemoryAllocationSize): they have 8 bytes a pixel on GPUs, and for
- * LIMPID_METHOD_NANO 32 bytes a pixel on all devices, for LIMPID_METHOD_FILM 96, with both sides rounded up to
- * multiples of 16. */
+ * (maxStorageBufferRange, maxBufferSize, maxMemoryAllocationSize): they have 8 bytes a pixel on GPUs.
+ * LIMPID_METHOD_NANO and LIMPID_METHOD_FILM have 32 and 96 on all devices, and compute the picture in parts where that
+ * is too much. */
 LIMPID_API limpid_result limpid_denoiser_create(limpid_device* device, const limpid_denoiser_desc* desc,
                                                 limpid_denoiser** denoiser);
 /* NULL is ignored. Everything it has recorded must be finished on the device. */

@@ -19,12 +19,6 @@ TEST_F(CliTest, WrongUsageIsExitCode2) {
     // Found before the scene is loaded, and the second one by the device.
     expect("render none.gltf -o " + path("a.png") + " --width 65535 --height 65535", 2, "at most 268435456");
     expect("render none.gltf -o " + path("a.png") + " --width 65535 --height 1 --device cpu", 2, " a side");
-    expect("render builtin:cornell -o " + path("a.png") +
-               " --width 3840 --height 2160 --frames 1 --denoiser nano --device cpu",
-           2, "too many for the denoiser 'nano'");
-    expect("render builtin:cornell -o " + path("a.png") +
-               " --width 1920 --height 1080 --frames 1 --denoiser film --device cpu",
-           2, "too many for the denoiser 'film'");
     expect("render none.gltf -o " + path("a.png") + " --width 16384 --height 16384 --device cpu", 2,
            " in an image");
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--set pathtrace.max_depth=x", 2,

@@ -66,6 +66,7 @@ class DenoiseTest : public GpuTest {
         denoise::DenoiserInput input = denoise::upload(graph_, frame);
         input.filters = filters_;
         input.matrices = matrices_;
+        input.largestBuffer = largestBuffer_;
         output_ = method.record(graph_, input, settings, networks_);
         graph_.execute(device());
         return graph_.downloadFloat(device(), output_.beauty);
@@ -76,6 +77,7 @@ class DenoiseTest : public GpuTest {
     denoise::DenoiserNetworks networks_;
     gpu::Backing filters_ = gpu::Backing::Image;
     bool matrices_ = false;  ///< cooperative matrices, on devices that have them
+    uint64_t largestBuffer_ = UINT64_MAX;
 };
 
 }  // namespace limpid::test

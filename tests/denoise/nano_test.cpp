@@ -357,6 +357,26 @@ TEST_F(NanoTest, WithoutStrengthItIsSvgf) {
     }
 }
 
+/// Tiles overlap as far as anything in them matters.
+TEST_F(NanoTest, TilesMakeTheSamePicture) {
+    for (const Case& c :
+         {Case{.columns = 700, .rows = 20}, Case{.method = "film", .columns = 20, .rows = 724}}) {
+        method_ = c.method;
+        const uint64_t bytesOfPixel = isFilm() ? 96 : 32;
+        std::vector<std::vector<float>> pictures;
+        for (const uint64_t pixels : {UINT64_MAX / bytesOfPixel, uint64_t{700 * 24}}) {
+            largestBuffer_ = pixels * bytesOfPixel;
+            graph_.beginFrame();
+            graph_.resetHistories();
+            for (int number = 0; number < 3; ++number)
+                pictures.push_back(denoise(method(), frameOf(c, number)));
+        }
+        EXPECT_THAT(graph_.passes(),
+                    testing::Contains(testing::Field(&gpu::RecordedPass::name, pass("filter 0, 2 of 4"))));
+        for (size_t i = 0; i < 3; ++i) EXPECT_EQ(pictures[i], pictures[i + 3]) << c.method << ", frame " << i;
+    }
+}
+
 /// The layers of the first frame.
 std::vector<Layer> NanoTest::layers(const Case& c) {
     graph_.beginFrame();

@@ -35,8 +35,9 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     vec2 jitter{0.0f};
     /// The jitter changes from frame to frame, to smooth edges: TaaSettings::frames is 2 by default.
     bool jitterChanges = false;
-    gpu::Backing filters = gpu::Backing::Image;  ///< these two: choose()
+    gpu::Backing filters = gpu::Backing::Image;  ///< these three: choose()
     bool matrices = false;
+    uint64_t largestBuffer = UINT64_MAX;  ///< bytes
     /// Made by the ingest pass, or empty: what the surfaces stage makes of a frame's layers. With them,
     /// methods whose `readsLayers` is false find normal, depth and ids empty.
     gpu::History surfaces;
@@ -52,6 +53,7 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     void choose(const gpu::FilterChoice& choice) {
         filters = choice.backing;
         matrices = choice.matrices;
+        largestBuffer = choice.largestBuffer;
     }
 };
 

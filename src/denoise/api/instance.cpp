@@ -178,7 +178,7 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
                                   .layers = method.readsLayers || antialiases,
                                   .albedo = !method.oneChannel,
                                   .filters = choice.backing});
-    input.matrices = choice.matrices;
+    input.choose(choice);
     input.jitter = params.motion.jitter;
     if (!antialiases && !used.temporal.showDisocclusion) input.target = target;
     input.wantsSignals = signalsToo;

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "denoise/methods/film/film_network.h"
 #include "denoise/methods/methods.h"
+#include "denoise/methods/nano/nano_tiles.h"
 #include "denoise/stages/ingest/ingest.h"
 #include "denoise/stages/output/output.h"
 
@@ -17,6 +18,7 @@ namespace {
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
 using testing::UnorderedElementsAreArray;
 
@@ -102,6 +104,32 @@ TEST(RecordingTest, NetworksMultiplyMatricesWhereTheDeviceCan) {
             EXPECT_EQ(others, matrices ? 0u : layers);
         }
     }
+}
+
+TEST(RecordingTest, TilesCoverThePictureAndOverlap) {
+    const uint32_t reach = nanoReach(filmNetwork());
+    EXPECT_EQ(reach, 156u);
+    EXPECT_EQ(nanoReach(nanoNetwork()), 153u);
+    for (const gpu::Extent picture : {gpu::Extent{1920, 1080}, {3840, 2160}, {7, 16001}, {1399, 1000}}) {
+        const std::vector<NanoTile> tiles = nanoTiles(picture, reach, (1u << 27u) / 96);
+        EXPECT_GT(tiles.size(), picture.height == 16001 ? 0u : 1u);
+        uint64_t covered = 0;
+        for (const NanoTile& tile : tiles) {
+            const uint32_t right = tile.innerX + tile.inner.width, below = tile.innerY + tile.inner.height;
+            covered += uint64_t{tile.inner.width} * tile.inner.height;
+            EXPECT_LE(uint64_t{tile.extent.width} * tile.extent.height, (1u << 27u) / 96);
+            EXPECT_EQ((tile.x | tile.y | tile.extent.width | tile.extent.height) % 16, 0u);
+            EXPECT_TRUE(tile.x == 0 || tile.x + reach <= tile.innerX);
+            EXPECT_TRUE(tile.y == 0 || tile.y + reach <= tile.innerY);
+            EXPECT_GE(tile.x + tile.extent.width, std::min(right + reach, picture.width));
+            EXPECT_GE(tile.y + tile.extent.height, std::min(below + reach, picture.height));
+            EXPECT_LE(right, picture.width);
+            EXPECT_LE(below, picture.height);
+        }
+        EXPECT_EQ(covered, uint64_t{picture.width} * picture.height);
+    }
+    EXPECT_EQ(nanoTiles({3840, 2160}, reach, 3840 * 2160).size(), 1u);
+    EXPECT_THAT(nanoTiles({3840, 2160}, reach, 1000), IsEmpty());
 }
 
 /// What the arrays of nano_matrix.glsl and of the shaders that include it take.

@@ -57,8 +57,9 @@ enum class Backing { Image, Buffer };
 
 /// What filters choose by the device.
 struct FilterChoice {
-    Backing backing = Backing::Image;  ///< of images that they read many times
-    bool matrices = false;             ///< cooperative matrices (DeviceInfo::cooperativeMatrices)
+    Backing backing = Backing::Image;     ///< of images that they read many times
+    bool matrices = false;                ///< cooperative matrices (DeviceInfo::cooperativeMatrices)
+    uint64_t largestBuffer = UINT64_MAX;  ///< bytes; methods divide pictures whose buffers would be larger
 };
 
 struct Image;  ///< defined in gpu/vulkan/memory/image.h, for gpu/ only

@@ -126,7 +126,9 @@ void Device::onNewPipelines(std::function<void()> listener) {
 }
 
 FilterChoice filterChoice(const Device& device) {
-    return {device.isCpu() ? Backing::Image : Backing::Buffer, device.info().cooperativeMatrices};
+    return {.backing = device.isCpu() ? Backing::Image : Backing::Buffer,
+            .matrices = device.info().cooperativeMatrices,
+            .largestBuffer = device.maxStorageBufferBytes()};
 }
 
 }  // namespace limpid::gpu

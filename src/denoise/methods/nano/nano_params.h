@@ -32,7 +32,9 @@ struct NanoFeaturesParams {
     CameraParams camera;
     uint width;  // of the picture
     uint height;
-    uint paddedWidth;  // a multiple of 2^(NANO_LEVELS - 1)
+    uint tileX;  // the tile's corner in the picture
+    uint tileY;
+    uint paddedWidth;  // of the tile: a multiple of 2^(NANO_LEVELS - 1)
     uint paddedHeight;
 };
 
@@ -46,8 +48,12 @@ struct NanoConvolveParams {
 };
 
 struct NanoFilterParams {
-    uint width;  // of what is written: the picture at the finest level, else the padded level
+    uint width;  // of what is written: the tile's inner part at the finest level, else the padded level
     uint height;
+    uint innerX;  // the corner of what is written at the finest level, in the picture
+    uint innerY;
+    uint tileX;  // the tile's corner in the picture, for the finest level
+    uint tileY;
     uint paddedWidth;
     uint paddedHeight;
     uint groups;       // of inputs

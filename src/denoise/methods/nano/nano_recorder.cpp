@@ -1,10 +1,13 @@
 #include "denoise/methods/nano/nano_recorder.h"
 
 #include <array>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "denoise/methods/methods.h"
 #include "denoise/methods/nano/nano_matrices.h"
+#include "denoise/methods/nano/nano_tiles.h"
 #include "nano_convolve.comp.h"
 #include "nano_features.comp.h"
 #include "nano_features_buffers.comp.h"
@@ -28,37 +31,44 @@ constexpr uint32_t poolLogit(size_t level) {
     return static_cast<uint32_t>(edge * edge + NANO_COARSER_TAPS + shares);
 }
 
-class Recorder {
+/// What all tiles of a picture have in common.
+struct Picture {
+    gpu::FrameGraph& graph;
+    const DenoiserInput& input;
+    const SvgfStages& svgf;
+    const NanoNetwork& network;
+    float strength;
+    gpu::Extent extent;
+    ImageHandle weights, stableToo;
+    SvgfLight results;
+    std::map<std::string, ImageHandle> buffers;  ///< all tiles are of one size, and use the same
+};
+
+class TileRecorder {
   public:
-    Recorder(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfStages& svgf,
-             const NanoNetwork& network, float strength)
-        : graph_(graph),
-          input_(input),
-          svgf_(svgf),
-          network_(network),
-          strength_(strength),
-          buffers_(input.filters == Backing::Buffer),
-          picture_(graph.extent(svgf.signals.front().filtered)) {
-        constexpr uint32_t multiple = 1u << (NANO_LEVELS - 1);
+    /// `suffix`: of the names of passes.
+    TileRecorder(Picture& picture, const NanoTile& tile, const std::string& suffix)
+        : picture_(picture),
+          graph_(picture.graph),
+          input_(picture.input),
+          svgf_(picture.svgf),
+          network_(picture.network),
+          tile_(tile),
+          suffix_(suffix),
+          buffers_(input_.filters == Backing::Buffer) {
         for (size_t i = 0; i < NANO_LEVELS; ++i)
-            extents_[i] = {(picture_.width + multiple - 1) / multiple * multiple >> i,
-                           (picture_.height + multiple - 1) / multiple * multiple >> i};
+            extents_[i] = {tile.extent.width >> i, tile.extent.height >> i};
     }
 
-    /// Returns the light of both signals.
-    SvgfLight record() {
-        weights_ =
-            graph_.transient(name("weights"), Format::RGBA32Uint,
-                             {static_cast<uint32_t>(network_.weights.size() / 16), 1}, Backing::Buffer);
-        graph_.upload(weights_, network_.weights);
+    void record() {
         ImageHandle channels = features();
         std::array<ImageHandle, NANO_LEVELS> kept;
         for (size_t i = 0; i < NANO_LEVELS; ++i) {
             const NanoLevel& level = network_.levels[i];
             if (i > 0) channels = convolve(name("halve", i), level.halve, i, NANO_HALVE, channels);
             for (size_t n = 0; n < level.around.size(); ++n)
-                channels = convolve(name("around", i) + "." + std::to_string(n + 1), level.around[n], i,
-                                    NANO_AROUND, channels);
+                channels = convolve(name("around " + std::to_string(i) + "." + std::to_string(n + 1)),
+                                    level.around[n], i, NANO_AROUND, channels);
             kept[i] = channels;
         }
         for (size_t i = NANO_LEVELS - 1; i-- > 0;) {
@@ -70,7 +80,7 @@ class Recorder {
         for (size_t i = 0; i + 1 < NANO_LEVELS; ++i) pool(i, kept[i]);
         ImageHandle result;
         for (size_t i = NANO_LEVELS - 1; i > 0; --i) result = filter(i, kept[i], result);
-        return finest(kept[0], result);
+        finest(kept[0], result);
     }
 
   private:
@@ -81,8 +91,12 @@ class Recorder {
 
     /// A buffer with `groups` texels for each pixel of the level.
     ImageHandle texels(const std::string& name, size_t level, uint32_t groups) {
-        return graph_.transient(name, Format::RGBA32Uint,
-                                {extents_[level].width * groups, extents_[level].height}, Backing::Buffer);
+        ImageHandle& buffer = picture_.buffers[name];
+        if (!buffer)
+            buffer =
+                graph_.transient(name, Format::RGBA32Uint,
+                                 {extents_[level].width * groups, extents_[level].height}, Backing::Buffer);
+        return buffer;
     }
 
     ImageHandle features() {
@@ -90,12 +104,14 @@ class Recorder {
         light_[0] = texels(name("light", 0), 0, 1);
         const SvgfSignalStages &a = svgf_.signals.front(), &b = svgf_.signals.back();
         const NanoFeaturesParams params{.camera = input_.camera,
-                                        .width = picture_.width,
-                                        .height = picture_.height,
+                                        .width = picture_.extent.width,
+                                        .height = picture_.extent.height,
+                                        .tileX = tile_.x,
+                                        .tileY = tile_.y,
                                         .paddedWidth = extents_[0].width,
                                         .paddedHeight = extents_[0].height};
         graph_.dispatch(
-            {.pass = name("features"),
+            {.pass = name("features") + suffix_,
              .shader = buffers_ ? shaders::nano_features_buffers_comp : shaders::nano_features_comp,
              .bindings = {{"surfaces", svgf_.surfaces},
                           {"colorA", a.accumulated},
@@ -110,7 +126,7 @@ class Recorder {
                           {"momentsB", b.moments},
                           {"albedoA", input_.albedo},
                           {"albedoB", input_.albedoSpecular ? input_.albedoSpecular : input_.albedo},
-                          {"weights", weights_},
+                          {"weights", picture_.weights},
                           {"channels", channels},
                           {"light", light_[0]}},
              .params = gpu::paramsOf(params),
@@ -122,7 +138,7 @@ class Recorder {
     }
 
     /// Without the network's result, SVGF's own stays, which has not been rounded to halves.
-    bool replacesStable() const { return svgf_.stabilised && strength_ > 0.0f; }
+    bool replacesStable() const { return svgf_.stabilised && picture_.strength > 0.0f; }
 
     bool twoSignals() const { return svgf_.signals.size() > 1; }
 
@@ -133,9 +149,10 @@ class Recorder {
                                      : shares.point)[level];
     }
 
-    ImageHandle convolve(const std::string& pass, const NanoLayer& layer, size_t level, uint32_t taps,
+    ImageHandle convolve(const std::string& name, const NanoLayer& layer, size_t level, uint32_t taps,
                          ImageHandle inputs, ImageHandle coarser = {}) {
-        const ImageHandle outputs = texels(pass, level, layer.outputs);
+        const ImageHandle outputs = texels(name, level, layer.outputs);
+        const std::string pass = name + suffix_;
         const Extent extent = extents_[level];
         const NanoConvolveParams params{.width = extent.width,
                                         .height = extent.height,
@@ -145,15 +162,17 @@ class Recorder {
                                         .weights = layer.weights};
         if (!coarser) coarser = inputs;
         if (input_.matrices) {
-            convolveByMatrices(
-                graph_, {pass, shareOf(level, taps), taps, params, inputs, coarser, weights_, outputs});
+            convolveByMatrices(graph_, {pass, shareOf(level, taps), taps, params, inputs, coarser,
+                                        picture_.weights, outputs});
             return outputs;
         }
         graph_.dispatch(
             {.pass = pass,
              .shader = shaders::nano_convolve_comp,
-             .bindings =
-                 {{"inputs", inputs}, {"coarser", coarser}, {"weights", weights_}, {"outputs", outputs}},
+             .bindings = {{"inputs", inputs},
+                          {"coarser", coarser},
+                          {"weights", picture_.weights},
+                          {"outputs", outputs}},
              .params = gpu::paramsOf(params),
              .constants = {{"TAPS", taps}},
              .extent = {(extent.width + NANO_PIXELS - 1) / NANO_PIXELS, extent.height * layer.outputs}});
@@ -162,24 +181,28 @@ class Recorder {
 
     NanoFilterParams filterParams(size_t level) const {
         const NanoLayer& layer = network_.levels[level].logits;
-        const Extent padded = extents_[level], filtered = level == 0 ? picture_ : padded;
-        return {.width = filtered.width,
-                .height = filtered.height,
+        const Extent padded = extents_[level], written = level == 0 ? tile_.inner : padded;
+        return {.width = written.width,
+                .height = written.height,
+                .innerX = tile_.innerX,
+                .innerY = tile_.innerY,
+                .tileX = tile_.x,
+                .tileY = tile_.y,
                 .paddedWidth = padded.width,
                 .paddedHeight = padded.height,
                 .groups = layer.inputs,
                 .logitGroups = layer.outputs / 2,
                 .weights = layer.weights,
-                .strength = strength_};
+                .strength = picture_.strength};
     }
 
     void pool(size_t level, ImageHandle channels) {
         light_[level + 1] = texels(name("light", level + 1), level + 1, 1);
         const NanoFilterParams params = filterParams(level);
-        graph_.dispatch({.pass = name("pool", level + 1),
+        graph_.dispatch({.pass = name("pool", level + 1) + suffix_,
                          .shader = shaders::nano_pool_comp,
                          .bindings = {{"inputs", channels},
-                                      {"weights", weights_},
+                                      {"weights", picture_.weights},
                                       {"light", light_[level]},
                                       {"pooled", light_[level + 1]}},
                          .params = gpu::paramsOf(params),
@@ -190,10 +213,10 @@ class Recorder {
     ImageHandle filter(size_t level, ImageHandle channels, ImageHandle coarser) {
         const ImageHandle result = texels(name("filtered", level), level, 1);
         const NanoFilterParams params = filterParams(level);
-        graph_.dispatch({.pass = name("filter", level),
+        graph_.dispatch({.pass = name("filter", level) + suffix_,
                          .shader = shaders::nano_filter_comp,
                          .bindings = {{"inputs", channels},
-                                      {"weights", weights_},
+                                      {"weights", picture_.weights},
                                       {"light", light_[level]},
                                       {"coarser", coarser ? coarser : light_[level]},
                                       {"result", result}},
@@ -203,47 +226,76 @@ class Recorder {
         return result;
     }
 
-    SvgfLight finest(ImageHandle channels, ImageHandle coarser) {
-        const auto image = [&](const std::string& called) {
-            return graph_.transient(called, Format::RGBA16Float, picture_, input_.filters);
-        };
+    void finest(ImageHandle channels, ImageHandle coarser) {
         const SvgfSignalStages &a = svgf_.signals.front(), &b = svgf_.signals.back();
-        const ImageHandle stableToo =
-            twoSignals() ? b.stable
-                         : graph_.transient(name("no second"), Format::R32Uint, {1, 1}, input_.filters);
-        const SvgfLight results{image(name("diffuse")), image(name("specular"))};
         const NanoFilterParams params = filterParams(0);
-        graph_.dispatch({.pass = name("filter", 0),
+        graph_.dispatch({.pass = name("filter", 0) + suffix_,
                          .shader = buffers_ ? shaders::nano_finest_buffers_comp : shaders::nano_finest_comp,
                          .bindings = {{"inputs", channels},
-                                      {"weights", weights_},
+                                      {"weights", picture_.weights},
                                       {"light", light_[0]},
                                       {"coarser", coarser},
                                       {"filteredA", a.filtered},
                                       {"filteredB", b.filtered},
-                                      {"resultA", results[0]},
-                                      {"resultB", results[1]},
+                                      {"resultA", picture_.results[0]},
+                                      {"resultB", picture_.results[1]},
                                       {"stableA", a.stable},
-                                      {"stableB", stableToo}},
+                                      {"stableB", picture_.stableToo}},
                          .params = gpu::paramsOf(params),
                          .constants = {{"COARSER", 1u},
                                        {"STABILISE", replacesStable() ? 1u : 0u},
                                        {"TWO_SIGNALS", twoSignals() ? 1u : 0u}},
-                         .extent = picture_});
-        return results;
+                         .extent = tile_.inner});
     }
 
+    Picture& picture_;
     gpu::FrameGraph& graph_;
     const DenoiserInput& input_;
     const SvgfStages& svgf_;
     const NanoNetwork& network_;
-    const float strength_;
+    const NanoTile& tile_;
+    const std::string suffix_;
     const bool buffers_;
-    const Extent picture_;
-    std::array<Extent, NANO_LEVELS> extents_;  ///< with padding
+    std::array<Extent, NANO_LEVELS> extents_;
     std::array<ImageHandle, NANO_LEVELS> light_;
-    ImageHandle weights_;
 };
+
+Picture pictureOf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfStages& svgf,
+                  const NanoNetwork& network, float strength) {
+    const Extent extent = graph.extent(svgf.signals.front().filtered);
+    const auto image = [&](const std::string& called) {
+        return graph.transient(network.name + "/" + called, Format::RGBA16Float, extent, input.filters);
+    };
+    const ImageHandle weights =
+        graph.transient(network.name + "/weights", Format::RGBA32Uint,
+                        {static_cast<uint32_t>(network.weights.size() / 16), 1}, Backing::Buffer);
+    graph.upload(weights, network.weights);
+    const ImageHandle stableToo =
+        svgf.signals.size() > 1
+            ? svgf.signals.back().stable
+            : graph.transient(network.name + "/no second", Format::R32Uint, {1, 1}, input.filters);
+    return {.graph = graph,
+            .input = input,
+            .svgf = svgf,
+            .network = network,
+            .strength = strength,
+            .extent = extent,
+            .weights = weights,
+            .stableToo = stableToo,
+            .results = {image("diffuse"), image("specular")},
+            .buffers = {}};
+}
+
+/// Channels of the finest level, which take most, fit in a buffer. One tile if none is small enough, so that
+/// what executes the graph says that a buffer is too large.
+std::vector<NanoTile> tilesOf(const Picture& picture) {
+    constexpr uint64_t bytesOfGroup = 16;
+    const uint64_t bytesOfPixel = bytesOfGroup * picture.network.levels[0].halve.outputs;
+    const uint32_t reach = nanoReach(picture.network);
+    std::vector<NanoTile> tiles =
+        nanoTiles(picture.extent, reach, picture.input.largestBuffer / bytesOfPixel);
+    return tiles.empty() ? nanoTiles(picture.extent, reach, UINT64_MAX) : tiles;
+}
 
 }  // namespace
 
@@ -258,8 +310,14 @@ ParamTable<NetworkSettings> networkParams(const std::string& method) {
 DenoiserOutput recordNetwork(gpu::FrameGraph& graph, const DenoiserInput& input,
                              const FilterSettings& settings, const NanoNetwork& network, float strength) {
     const SvgfStages stages = recordSvgfStages(graph, input, settings.svgf);
-    return composeSvgf(graph, input, settings, stages,
-                       Recorder(graph, input, stages, network, strength).record());
+    Picture picture = pictureOf(graph, input, stages, network, strength);
+    const std::vector<NanoTile> tiles = tilesOf(picture);
+    for (size_t i = 0; i < tiles.size(); ++i) {
+        const std::string suffix =
+            tiles.size() == 1 ? "" : ", " + std::to_string(i + 1) + " of " + std::to_string(tiles.size());
+        TileRecorder(picture, tiles[i], suffix).record();
+    }
+    return composeSvgf(graph, input, settings, stages, picture.results);
 }
 
 }  // namespace limpid::denoise

@@ -111,7 +111,7 @@ void gather(ivec2 at, Signal a, Signal b) {
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= int(params.paddedWidth) || pixel.y >= int(params.paddedHeight)) return;
-    const ivec2 at = inside(pixel);
+    const ivec2 at = inside(pixel + ivec2(params.tileX, params.tileY));
     const vec4 filtered = LOAD_HALF4(filteredA, at);
     vec3 before = filtered.rgb;
     if (HAS_PAST) before = unpackedStable(LOAD_UINT1(pastA, at));

@@ -93,18 +93,24 @@ vec4 mixed(vec4 svgf, vec3 own, Logits logits) {
 #endif
 
 void main() {
-    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= int(params.width) || at.y >= int(params.height)) return;
+    const ivec2 written = ivec2(gl_GlobalInvocationID.xy);
+    if (written.x >= int(params.width) || written.y >= int(params.height)) return;
+#ifdef LIMPID_NANO_FINEST
+    const ivec2 inPicture = written + ivec2(params.innerX, params.innerY);
+    const ivec2 at = inPicture - ivec2(params.tileX, params.tileY);
+#else
+    const ivec2 at = written;
+#endif
     const uint pixel = uint(at.y) * params.paddedWidth + uint(at.x);
     const Logits a = logitsOfSignal(pixel, 0u), b = logitsOfSignal(pixel, 1u);
     const LightPair own = filtered(at, a, b);
 #ifdef LIMPID_NANO_FINEST
-    const vec4 diffuse = mixed(LOAD_HALF4(filteredA, at), own.diffuse, a);
-    const vec4 specular = mixed(LOAD_HALF4(filteredB, at), own.specular, b);
-    STORE_HALF4(resultA, at, diffuse);
-    STORE_HALF4(resultB, at, specular);
-    if (STABILISE) STORE_UINT1(stableA, at, packedStable(diffuse.rgb));
-    if (STABILISE && TWO_SIGNALS) STORE_UINT1(stableB, at, packedStable(specular.rgb));
+    const vec4 diffuse = mixed(LOAD_HALF4(filteredA, inPicture), own.diffuse, a);
+    const vec4 specular = mixed(LOAD_HALF4(filteredB, inPicture), own.specular, b);
+    STORE_HALF4(resultA, inPicture, diffuse);
+    STORE_HALF4(resultB, inPicture, specular);
+    if (STABILISE) STORE_UINT1(stableA, inPicture, packedStable(diffuse.rgb));
+    if (STABILISE && TWO_SIGNALS) STORE_UINT1(stableB, inPicture, packedStable(specular.rgb));
 #else
     result.texels[pixel] = packLightPair(own);
 #endif
