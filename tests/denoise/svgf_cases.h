@@ -27,6 +27,7 @@ struct SvgfCase {
     bool hasRoughness = true;
     int mixesFrom = 0;          ///< before this frame, filtered light is not stabilised
     bool hasNegatives = false;  ///< a quarter of the light is 0, a quarter below 0
+    uint32_t samples = 1;       ///< with known variances, if there are more
 };
 
 inline SvgfSettings svgfPreset(const char* name) {
@@ -100,14 +101,30 @@ inline std::vector<SvgfCase> svgfCases() {
                  .frames = 10,
                  .jumpAt = 6,
                  .hasNans = true},
+        SvgfCase{.name = "TwoSamples",
+                 .options = moving,
+                 .settings = {.fireflies = 0.2f, .levels = 2},
+                 .samples = 2},
+        SvgfCase{.name = "ManySamples",
+                 .options = moving,
+                 .settings = {.fireflies = 0.001f, .levels = 2},
+                 .frames = 10,
+                 .jumpAt = 6,
+                 .hasNans = true,
+                 .samples = 16},
+        SvgfCase{.name = "SampledNegatives",
+                 .options = moving,
+                 .settings = {.levels = 0},
+                 .hasNegatives = true,
+                 .samples = 4},
         SvgfCase{.name = "Negatives", .options = moving, .settings = {.levels = 0}, .hasNegatives = true}};
 }
 
 /// Filters in buffers differ in where they load and store: cases of sizes, histories and tiles tell.
 inline std::vector<SvgfCase> svgfCasesInBuffers() {
-    const std::set<std::string> names{"Both", "Orthographic",  "Resize",   "Tiny",
-                                      "Thin", "Position",      "Wide",     "Lag",
-                                      "Nans", "NotStabilised", "Fireflies"};
+    const std::set<std::string> names{"Both", "Orthographic",  "Resize",    "Tiny",
+                                      "Thin", "Position",      "Wide",      "Lag",
+                                      "Nans", "NotStabilised", "Fireflies", "TwoSamples"};
     std::vector<SvgfCase> chosen;
     std::ranges::copy_if(svgfCases(), std::back_inserter(chosen),
                          [&](const SvgfCase& c) { return names.contains(c.name); });

@@ -176,6 +176,18 @@ class SvgfPassTest : public DenoiseTest, public testing::WithParamInterface<Case
     size_t dimmed_ = 0;                          ///< pixels so far
 };
 
+/// Deviations from none to about the light's luminance.
+void addVariances(HostFrame& frame, uint32_t samples) {
+    frame.samples = samples;
+    frame.variances = samples > 1;
+    for (auto* layer : {&frame.diffuse, &frame.specular}) {
+        for (size_t i = 0; i < frame.pixelCount() * 4; i += 4) {
+            const float deviation = (*layer)[i] * static_cast<float>(i * 7919 % 17) / 16.0f;
+            (*layer)[i + 3] = deviation * deviation;
+        }
+    }
+}
+
 HostFrame SvgfPassTest::frameOf(int number) {
     const SvgfCase& c = std::get<0>(GetParam());
     const bool small = c.resizeAt >= 0 && number >= c.resizeAt;
@@ -192,6 +204,7 @@ HostFrame SvgfPassTest::frameOf(int number) {
             frame.specular[i] *= factor;
         }
     }
+    addVariances(frame, c.samples);
     if (!c.hasRoughness) frame.roughness.clear();
     if (!c.hasNans) return frame;
     size_t at = static_cast<size_t>(number) * 4 + 1;
@@ -199,6 +212,7 @@ HostFrame SvgfPassTest::frameOf(int number) {
                             std::numeric_limits<float>::max()}) {
         for (auto* layer : {&frame.diffuse, &frame.specular, &frame.albedo, &frame.albedoSpecular}) {
             for (size_t i = at; i < layer->size(); i += 4 * 997) (*layer)[i] = bad;
+            for (size_t i = (at | 3u) + 8; i < layer->size(); i += 4 * 997) (*layer)[i] = bad;  // alpha
             at += 4 * 83;
         }
         for (size_t i = at - 1; i < frame.roughness.size(); i += 4 * 97) frame.roughness[i] = bad;

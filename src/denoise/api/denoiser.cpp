@@ -24,12 +24,19 @@ DenoiserOutput recordKpcn(gpu::FrameGraph& graph, const DenoiserInput& input,
 
 constexpr std::array<std::string_view, 2> kpcnGroups{"kpcn", "taa"};
 
-#define LIMPID_ROW(method)                                                              \
-    Denoiser{#method, method::help,       recordFilter<method::record>, method::groups, \
-             false,   method::oneChannel, method::keepsHistory,         method::samples},
+#define LIMPID_ROW(method)                             \
+    Denoiser{.name = #method,                          \
+             .help = method::help,                     \
+             .record = recordFilter<method::record>,   \
+             .groups = method::groups,                 \
+             .network = false,                         \
+             .readsVariances = method::readsVariances, \
+             .oneChannel = method::oneChannel,         \
+             .keepsHistory = method::keepsHistory,     \
+             .samples = method::samples},
 constexpr std::array all{LIMPID_METHODS(LIMPID_ROW) Denoiser{
     "kpcn", "kernels predicted by a trained network: each frame by itself, of about 32 samples", recordKpcn,
-    kpcnGroups, true, false, false, 32}};
+    kpcnGroups, true, true, false, false, 32}};
 #undef LIMPID_ROW
 
 }  // namespace

@@ -40,10 +40,11 @@ struct Denoiser {
                              const DenoiserNetworks&);
     /// The parameter groups that it uses.
     std::span<const std::string_view> groups;
-    bool network = false;     ///< needs one of DenoiserNetworks, and frames with variances of several samples
-    bool oneChannel = false;  ///< Method::oneChannel
-    bool keepsHistory = false;  ///< Method::keepsHistory
-    uint32_t samples = 1;       ///< Method::samples
+    bool network = false;  ///< needs one of DenoiserNetworks, and frames with variances of several samples
+    bool readsVariances = false;  ///< of several samples, where frames have them
+    bool oneChannel = false;      ///< Method::oneChannel
+    bool keepsHistory = false;    ///< Method::keepsHistory
+    uint32_t samples = 1;         ///< Method::samples
 };
 
 std::span<const Denoiser> denoisers();

@@ -39,6 +39,7 @@ DenoiserInput uploadFrame(gpu::FrameGraph& graph, const HostFrame& frame, bool b
     });
     input.camera = frame.camera;
     input.samples = frame.samples;
+    input.variances = frame.variances;
     input.jitter = frame.jitter.value_or(vec2(0.0f));
     input.jitterChanges = frame.jitter.has_value();
     return input;

@@ -28,8 +28,10 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     CameraParams camera{};
     /// Samples per pixel in the means. Alpha of diffuse, specular, albedo, normal and depth is the mean
     /// squared deviation over these samples: of the luminance, for normals the mean of the components, for
-    /// depth its own. Only networks read it.
+    /// depth its own. kpcn needs it.
     uint32_t samples = 1;
+    /// Alpha of diffuse and specular is set, for methods with Denoiser::readsVariances.
+    bool variances = false;
     /// From the pixels' centres to the point that this frame's rays go through, pixels, y down; the mean over
     /// samples. 0 also where it is unknown.
     vec2 jitter{0.0f};

@@ -6,6 +6,7 @@
 //     inline constexpr std::string_view help = ...;   one sentence, for `limpid info`
 //     inline constexpr std::array groups{...};        parameter groups that record() reads, std::string_view
 //     inline constexpr bool readsLayers = ...;        record() reads normal or depth, not only the surfaces
+//     inline constexpr bool readsVariances = ...;     record() reads DenoiserInput::variances
 //     inline constexpr bool oneChannel = ...;         filters visibility, not light
 //     inline constexpr bool keepsHistory = ...;       accumulates light over frames, along the motion
 //     inline constexpr uint32_t samples = ...;        what it is made for, per pixel and frame

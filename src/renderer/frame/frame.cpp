@@ -224,6 +224,7 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
     FrameImages out;
     static_cast<PathtraceLayers&>(out) = traceSamples(graph, scene, settings, input);
     denoise::DenoiserInput frame{{out}, input.camera, input.samples};
+    frame.variances = input.samples > 1;
     frame.choose(input.filters);
     frame.jitterChanges = settings.jitter == Jitter::Frame;
     if (frame.jitterChanges) frame.jitter = meanPoint(input.firstSample, input.samples, input.jitterSpan);

@@ -90,6 +90,12 @@ uint32_t samplesOf(const LayeredImage& file) {
     return samples > 0 ? samples : unknown;
 }
 
+bool knowsVarianceOfLight(const LayeredImage& file) {
+    return std::all_of(frameLayers.begin(), frameLayers.end(), [&](const LayerInfo& layer) {
+        return !layer.inBeauty || !layer.varianceInFiles || varianceOf(file, layer);
+    });
+}
+
 /// Reads the values that the file's channels have.
 ChannelReader readerOf(const LayeredImage& file) {
     return [&file](const std::string& channel, std::span<float> to, size_t stride) {
@@ -159,6 +165,7 @@ denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path
     frame.height = file.height;
     frame.camera = cameraOf(file, name);
     frame.samples = samplesOf(file);
+    frame.variances = frame.samples > 1 && knowsVarianceOfLight(file);
     frame.jitter = jitterOf(file, name);
     const auto makePixels = [&](const LayerInfo& layer, auto& texels) {
         texels.resize((layer.stored == Stored::Uint ? 2 : 4) * frame.pixelCount());

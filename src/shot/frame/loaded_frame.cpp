@@ -20,23 +20,26 @@ namespace limpid::shot {
 namespace {
 
 /// True if the denoiser reads this channel of Limpid's own files.
-bool isRead(std::string_view channel, bool network) {
-    if (channel.find(".variance") != std::string_view::npos) return network;
+bool isRead(std::string_view channel, bool network, bool variances) {
     const ChannelName name = split(channel);
+    if (channel.find(".variance") != std::string_view::npos)
+        return network ||
+               (variances && (channel.starts_with("diffuse.") || channel.starts_with("specular.")));
     return std::any_of(frameLayers.begin(), frameLayers.end(), [&](const LayerInfo& layer) {
         return layer.name == name.layer && (network || layer.forFilters != ForFilters::Nothing);
     });
 }
 
 /// The channels that are read of Limpid's own files, without their values.
-image::LayeredImage layeredImage(const image::ExrDocument& file, bool network) {
+image::LayeredImage layeredImage(const image::ExrDocument& file, bool network, bool variances) {
     image::LayeredImage picture;
     picture.width = file.width();
     picture.height = file.height();
     const image::ExrPart& part = file.parts().front();
     picture.metadata = part.texts;
     for (const auto& channel : part.channels)
-        if (isRead(channel.name, network)) picture.channels.push_back({channel.name, channel.storage, {}});
+        if (isRead(channel.name, network, variances))
+            picture.channels.push_back({channel.name, channel.storage, {}});
     return picture;
 }
 
@@ -268,7 +271,7 @@ void unpack(LoadedFrame& frame, const LoadOptions& options) {
     const bool asWritten = options.assignments.empty() && options.files.empty() && !options.layersOnly &&
                            isOwn(frame.file, sequence);
     if (asWritten) {
-        const image::LayeredImage picture = layeredImage(frame.file, options.network);
+        const image::LayeredImage picture = layeredImage(frame.file, options.network, options.variances);
         if (options.network) frame.estimated = lackingVariances(picture);
         frame.file.decode(0);  // before several threads read it
         const ChannelReader reader = [&](const std::string& channel, std::span<float> to, size_t stride) {

@@ -34,7 +34,8 @@ struct LoadedFrame {
 
 struct LoadOptions {
     Assignments assignments;
-    bool network = false;      ///< the denoiser reads variances, and no motion
+    bool network = false;      ///< the denoiser reads variances of all layers, and no motion
+    bool variances = false;    ///< the denoiser reads those of light, if the file has them
     bool sequence = false;     ///< layers of a sequence are needed
     bool searchMotion = true;  ///< in sequences whose files have no motion
     bool layersOnly = false;   ///< Limpid's own files are read as `layers`, too

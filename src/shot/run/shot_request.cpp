@@ -145,6 +145,7 @@ ShotJob jobOf(const ShotRequest& r) {
     chooseFrames(r, job);
     job.load.assignments = mapOf(r);
     job.load.network = job.options.method->network;
+    job.load.variances = job.options.method->readsVariances;
     job.load.files = filesOf(r, job.input.numbered());
     if (r.motion != "auto" && r.motion != "none") throw UsageError("--motion is 'auto' or 'none'");
     job.load.searchMotion = r.motion == "auto";

@@ -8,6 +8,7 @@
 // b.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "tests/oracle/double_frame.h"
@@ -78,10 +79,16 @@ struct SvgfAccumulated {
 };
 
 /// The demodulated light x = C / M of one signal, the input of the filter; 0 for `rejected` samples.
+/// `variance`: v, that of its luminance; 0 where it is unknown.
 struct SvgfSample {
     dvec3 x{0.0};
     bool rejected = false;
+    double variance = 0.0;
 };
+/// S: the samples of each pixel, of which the variance is known; else 1.
+inline double svgfSamples(const denoise::HostFrame& frame) {
+    return frame.variances ? static_cast<double>(std::max(frame.samples, 1u)) : 1.0;
+}
 SvgfSample svgfSample(const denoise::HostFrame& frame, SvgfSignal signal, size_t p, double minAlbedo);
 
 inline double luminance(const dvec3& color) {

@@ -134,7 +134,9 @@ void move(double& mean, double sample, const Step& step, double lengthSlope, dou
     mean += (sample - mean) * step.share;
 }
 
-void shorten(size_t p, double lag, const dvec3& x, const DoubleSvgfParams& params, SvgfAccumulated& result) {
+void shorten(size_t p, double lag, const SvgfSample& sample, const DoubleSvgfParams& params,
+             SvgfAccumulated& result) {
+    const dvec3& x = sample.x;
     SvgfPixel& pixel = result.pixels[p];
     dvec4 &color = result.color[p], &moments = result.moments[p];
     const double kept = 1.0 - lag, length = moments.w, shorter = 1.0 + (length - 1.0) * kept;
@@ -143,7 +145,8 @@ void shorten(size_t p, double lag, const dvec3& x, const DoubleSvgfParams& param
     for (int i = 0; i < 3; ++i)
         move(color[i], x[i], ofColor, lengthSlope, pixel.colorSlope[i], pixel.colorOperands[i]);
     const double l = luminance(x);
-    const dvec3 values(l, l * l, l), alphas(params.alphaMoments, params.alphaMoments, params.alphaFast);
+    const dvec3 values(l, l * l + sample.variance, l),
+        alphas(params.alphaMoments, params.alphaMoments, params.alphaFast);
     for (int i = 0; i < 3; ++i)
         move(moments[i], values[i], furtherShare(alphas[i], length, shorter, kept), lengthSlope,
              pixel.momentsSlope[i], pixel.momentsOperands[i]);
@@ -187,7 +190,7 @@ void svgfShorten(const denoise::HostFrame& frame, SvgfSignal signal, const std::
         const SvgfSample sample = svgfSample(frame, signal, p, params.minAlbedo);
         accumulated.pixels[p].doubtful |= std::abs(lag - minLag) < 1e-6;
         if (lag < minLag || sample.rejected || accumulated.moments[p].w <= 1.0) continue;
-        shorten(p, lag, sample.x, params, accumulated);
+        shorten(p, lag, sample, params, accumulated);
     }
 }
 

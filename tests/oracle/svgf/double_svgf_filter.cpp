@@ -178,15 +178,18 @@ struct Deviation {
     double sigma, error;
 };
 
-/// Returns the deviation of the light of the neighbours of p that have a history.
-Deviation deviationAround(const Neighbours& neighbours, size_t p, const std::vector<dvec4>& moments) {
+/// Returns the deviation of the light of the neighbours of p that have a history: of all together, or with
+/// `sampled` the mean of their own.
+Deviation deviationAround(const Neighbours& neighbours, size_t p, const std::vector<dvec4>& moments,
+                          bool sampled) {
     dvec2 sum(0.0);
     double weights = 0.0;
     bool found = false;
     neighbours.around(p, 1, 3, [&](size_t q, int i, int j) {
         if (moments[q].w <= 0.0) return;
         const double w = neighbours.weight(p, q, dvec2(i, j));
-        sum += w * dvec2(moments[q]);
+        const double variance = std::max(moments[q].y - moments[q].x * moments[q].x, 0.0);
+        sum += w * (sampled ? dvec2(0.0, variance) : dvec2(moments[q]));
         weights += w;
         found = true;
     });
@@ -271,8 +274,9 @@ std::vector<bool> svgfFillYoung(const denoise::HostFrame& frame, SvgfSignal sign
     const Neighbours neighbours(frame, signal, surfaces, params);
     std::vector<bool> doubtful(frame.pixelCount());
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
-        const double n = moments[p].w;
-        if (params.youngRadius <= 0 || !neighbours.sees(p) || n >= youngFrames) continue;
+        const double n = svgfSamples(frame) * moments[p].w;
+        if (params.youngRadius <= 0 || !neighbours.sees(p)) continue;
+        if (moments[p].w >= youngFrames || n > youngFrames) continue;
         int radius = params.youngRadius;
         while (radius * radius * std::max(n, 1.0) > params.youngRadius * params.youngRadius) --radius;
         dvec3 sum(0.0);
@@ -314,8 +318,9 @@ SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, SvgfSignal signa
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         const double n = moments[p].w;
         if (!neighbours.sees(p) || n >= youngFrames) continue;
-        const Deviation around = deviationAround(neighbours, p, moments);
-        const double boost = svgfBoost(n, params.boost);
+        const bool sampled = svgfSamples(frame) > 1.0;
+        const Deviation around = deviationAround(neighbours, p, moments, sampled);
+        const double boost = sampled ? 0.75 / std::sqrt(std::max(n, 1.0)) : svgfBoost(n, params.boost);
         result.color[p].w = std::min(boost * around.sigma, largestHalf);
         result.error[p] = boost * boost * around.error;
     }

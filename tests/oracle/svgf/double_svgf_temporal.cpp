@@ -31,6 +31,20 @@ dvec3 modulationOf(const DoubleFrame& pixels, SvgfSignal signal, size_t p, doubl
     return glm::min(modulation(a, minAlbedo), dvec3(largestHalf));
 }
 
+/// The variance v of the luminance of x = c / M.
+double varianceOf(const denoise::HostFrame& frame, SvgfSignal signal, size_t p, const dvec3& x,
+                  const dvec3& c) {
+    const double samples = svgfSamples(frame);
+    if (samples <= 1.0) return 0.0;
+    double squares = 0.0;
+    if (signal != SvgfSignal::Specular) squares += double{frame.diffuse[4 * p + 3]};
+    if (signal != SvgfSignal::Diffuse && !frame.specular.empty())
+        squares += double{frame.specular[4 * p + 3]};
+    if (!(squares > 0.0) || luminance(c) <= 1e-6) return 0.0;
+    const double ratio = luminance(glm::clamp(x, -largestHalf, largestHalf)) / luminance(c);
+    return std::min(std::min(squares, largestHalf) * ratio * ratio / (samples - 1.0), largestHalf);
+}
+
 std::vector<PreviousSurface> previousSurfaces(const SvgfHistory& history, size_t count) {
     std::vector<PreviousSurface> result(count);
     for (size_t q = 0; q < history.moments.size(); ++q) {
@@ -86,7 +100,8 @@ class Accumulator {
     std::optional<dvec3> reflectionMotion(size_t p) const;
     Reprojection reproject(size_t p, SvgfPixel& pixel) const;
     Old find(size_t p, SvgfPixel& pixel) const;
-    void update(const dvec3& x, const Old& old, dvec4& color, dvec4& moments, SvgfPixel& pixel) const;
+    void update(const SvgfSample& sample, const Old& old, dvec4& color, dvec4& moments,
+                SvgfPixel& pixel) const;
 
     const denoise::HostFrame& frame_;
     SvgfSignal signal_;
@@ -144,8 +159,9 @@ Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
             })};
 }
 
-void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& moments,
+void Accumulator::update(const SvgfSample& sample, const Old& old, dvec4& color, dvec4& moments,
                          SvgfPixel& pixel) const {
+    const dvec3& x = sample.x;
     const double longest = std::max(shortestHistory, 1.0 / std::min(params_.alpha, params_.alphaMoments));
     const double n = std::min(old.moments.mean.w + 1.0, longest);
     const auto blend = [&](const Sloped& was, double is, double alpha) {
@@ -160,8 +176,8 @@ void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& mo
         pixel.colorSlope[i] = c.slope;
         pixel.colorOperands[i] = std::max(std::abs(old.color.mean[i]), std::abs(x[i]));
     }
-    const double l = luminance(x);
-    const std::array<double, 3> values{l, l * l, l};
+    const double l = luminance(x), variance = old.moments.mean.w > 0.0 ? 0.0 : sample.variance;
+    const std::array<double, 3> values{l, l * l + variance, l};
     const std::array<double, 3> alphas{params_.alphaMoments, params_.alphaMoments, params_.alphaFast};
     for (int i = 0; i < 3; ++i) {
         const auto at = static_cast<size_t>(i);
@@ -192,7 +208,7 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
         pixel.colorSlope = old.color.slope;
         pixel.momentsSlope = old.moments.slope;
     } else {
-        update(sample.x, old, color, moments, pixel);
+        update(sample, old, color, moments, pixel);
     }
     result.stablePast[p] = dvec3(old.stable.mean);
     pixel.stablePastSlope = dvec3(old.stable.slope);
@@ -234,7 +250,7 @@ SvgfSample svgfSample(const denoise::HostFrame& frame, SvgfSignal signal, size_t
     const dvec3 c = signalOf(pixels, signal, p);
     if (!isFiniteInFloat(c)) return {dvec3(0.0), true};
     const dvec3 x = c / modulationOf(pixels, signal, p, minAlbedo);
-    return {glm::clamp(x, -largestHalf, largestHalf), false};
+    return {glm::clamp(x, -largestHalf, largestHalf), false, varianceOf(frame, signal, p, x, c)};
 }
 
 double svgfDeviation(double m1, double m2, double error) {

@@ -39,6 +39,7 @@ inline constexpr std::string_view help = "temporal accumulation, then the edge-a
 inline constexpr std::array<std::string_view, 3> groups{"temporal", "atrous", "taa"};
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = true;
+inline constexpr bool readsVariances = false;
 inline constexpr bool oneChannel = false;
 inline constexpr bool keepsHistory = true;
 inline constexpr uint32_t samples = 1;

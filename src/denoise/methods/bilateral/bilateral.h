@@ -34,6 +34,7 @@ inline constexpr std::string_view help =
 inline constexpr std::array<std::string_view, 2> groups{"bilateral", "taa"};
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = true;
+inline constexpr bool readsVariances = false;
 inline constexpr bool oneChannel = false;
 inline constexpr bool keepsHistory = false;
 inline constexpr uint32_t samples = 1;

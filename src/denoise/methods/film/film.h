@@ -14,6 +14,7 @@ inline constexpr std::string_view help =
 inline constexpr std::array<std::string_view, 3> groups{"film", "svgf", "taa"};
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = false;
+inline constexpr bool readsVariances = true;
 inline constexpr bool oneChannel = false;
 inline constexpr bool keepsHistory = true;
 inline constexpr uint32_t samples = 16;

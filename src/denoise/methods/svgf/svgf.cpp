@@ -140,6 +140,14 @@ class Svgf {
 
     float minAlbedo() const { return settings_.demodulate ? settings_.minAlbedo : 0.0f; }
 
+    /// Per pixel and frame; 1 where their variance is unknown.
+    float samples() const {
+        return input_.variances ? static_cast<float>(std::max(input_.samples, 1u)) : 1.0f;
+    }
+
+    /// Converts a mean squared deviation to the variance of the mean.
+    float ofMean() const { return samples() > 1.0f ? 1.0f / (samples() - 1.0f) : 0.0f; }
+
     /// The number of the level whose result is fed back; 0: no level's.
     int fedBack() const { return std::min(settings_.historyLevel, settings_.levels); }
 
@@ -163,6 +171,7 @@ class Svgf {
                         .previousNormals = input_.normalEncoding,
                         .motion = input_.motionEncoding};
         params.minAlbedo = minAlbedo();
+        params.ofMean = ofMean();
         params.lobeScale = 8.0f * log2e / std::max(settings_.lobeTest * settings_.lobeTest, 1e-12f);
         params.alpha = settings_.alpha;
         params.alphaMoments = settings_.alphaMoments;
@@ -273,6 +282,7 @@ class Svgf {
         const SvgfAntilagParams params{.width = extent_.width,
                                        .height = extent_.height,
                                        .minAlbedo = minAlbedo(),
+                                       .ofMean = ofMean(),
                                        .alpha = settings_.alpha,
                                        .alphaMoments = settings_.alphaMoments,
                                        .alphaFast = settings_.alphaFast};
@@ -299,6 +309,7 @@ class Svgf {
         params.stabilisationNoise = settings_.stabilisationNoise;
         params.fireflies = settings_.fireflies;
         params.youngRadius = settings_.youngRadius;
+        params.samples = samples();
         return params;
     }
 

@@ -61,6 +61,7 @@ inline constexpr std::string_view help =
 inline constexpr std::array<std::string_view, 2> groups{"temporal", "taa"};
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = false;
+inline constexpr bool readsVariances = false;
 inline constexpr bool oneChannel = false;
 inline constexpr bool keepsHistory = true;
 inline constexpr uint32_t samples = 1;

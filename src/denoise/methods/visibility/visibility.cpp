@@ -145,6 +145,7 @@ class Visibility {
         params.step = step;
         params.phiColor = settings_.phi;
         params.youngRadius = settings_.youngRadius;
+        params.samples = 1.0f;
         params.normalScale = log2e * settings_.phiNormal;
         params.depthScale = log2e / settings_.phiDepth;
         return params;

@@ -41,6 +41,7 @@ inline constexpr std::string_view help =
 inline constexpr std::array<std::string_view, 2> groups{"visibility", "taa"};
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = false;
+inline constexpr bool readsVariances = false;
 inline constexpr bool oneChannel = true;
 inline constexpr bool keepsHistory = true;
 inline constexpr uint32_t samples = 1;

@@ -76,28 +76,29 @@ float normalScaleOf(uvec2 surface) {
 #include "denoise/stages/reproject/history.glsl"
 #include "denoise/stages/reproject/reflection_motion.glsl"
 
-Past accumulated(Past past, vec3 x) {
+/// `first`: the moments of a history's first frame.
+Past accumulated(Past past, vec3 x, vec2 first) {
     const float frames = min(past.moments.w + 1.0, params.longest);
-    const float l = luminance(x);
+    const float l = luminance(x), square = past.moments.w > 0.0 ? l * l : first.y;
     const vec3 alphas = max(vec3(params.alphaMoments, params.alphaMoments, params.alphaFast), 1.0 / frames);
     return Past(mix(past.color, x, max(params.alpha, 1.0 / frames)), past.stable,
-                vec4(mix(past.moments.xyz, vec3(l, l * l, l), alphas), frames));
+                vec4(mix(past.moments.xyz, vec3(l, square, l), alphas), frames));
 }
 
 /// Returns the moments, as they are stored.
 vec4 accumulate(ivec2 at) {
-    const vec3 light = lightAt(at);
-    const vec3 x = demodulated(light, at);
+    const vec4 light = lightAt(at);
+    const vec3 x = demodulated(light.rgb, at);
     const uvec2 surface = LOAD_UINT2(surfaces, at);
     Past now = NO_PAST;
     if (REFLECTIONS) now = pastOf(at, surface, reflectionMotionAt(at));
     if (framesOf(now) <= 0.0) now = pastOf(at, surface, motionAt(at, surface));
-    if (isFinite(light)) now = accumulated(now, x);
+    if (isFinite(light.rgb)) now = accumulated(now, x, momentsOf(x, light));
     const bool seen = distanceOf(surface) > 0.0;
     const vec4 packed = seen ? packedMoments(now.moments) : vec4(0.0), stored = unpackedMoments(packed);
     imageStore(moments, at, packed);
     // Not divided by the albedo of nothing, which would take bright skies beyond the largest half.
-    const vec3 own = clamp(finiteOr(light, vec3(0.0)), -MAX_HALF, MAX_HALF);
+    const vec3 own = clamp(finiteOr(light.rgb, vec3(0.0)), -MAX_HALF, MAX_HALF);
     STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(stored)) : vec4(own, SVGF_NOTHING_SEEN));
     if (STABILISE) STORE_UINT1(stablePast, at, packedStable(now.stable));
     return stored;

@@ -15,9 +15,10 @@ READ_LAYER(2, lightB);
 READ_LAYER(3, albedoA);
 READ_LAYER(4, albedoB);
 
-vec3 lightAt(ivec2 at) {
-    vec3 light = LOAD_LAYER(lightA, at).rgb;
-    if (TWO_LIGHTS) light += LOAD_LAYER(lightB, at).rgb;
+/// With the mean squared deviation of the samples' luminance as alpha.
+vec4 lightAt(ivec2 at) {
+    vec4 light = LOAD_LAYER(lightA, at);
+    if (TWO_LIGHTS) light += LOAD_LAYER(lightB, at);
     return light;
 }
 
@@ -26,6 +27,14 @@ vec3 demodulated(vec3 light, ivec2 at) {
     if (TWO_ALBEDOS) albedo += LOAD_WIDE_LAYER(albedoB, at);
     const vec3 x = finiteOr(light, vec3(0.0)) / modulation(albedo, params.minAlbedo);
     return clamp(x, -MAX_HALF, MAX_HALF);
+}
+
+/// The first two moments of the luminance of `x`, the light without albedo. The variance of the mean over the frame's
+/// samples adds to the second one; its samples are divided by the albedo like their mean.
+vec2 momentsOf(vec3 x, vec4 light) {
+    const float l = luminance(x), before = luminance(light.rgb), ratio = before > 1e-6 ? l / before : 0.0;
+    const float squares = light.a > 0.0 ? min(light.a, MAX_HALF) : 0.0;  // which also rejects NaN
+    return vec2(l, l * l + min(params.ofMean * squares * ratio * ratio, MAX_HALF));
 }
 
 /// The fourth component of `color`: the expected deviation of the luminance, or SVGF_STILL_YOUNG.

@@ -16,8 +16,8 @@ struct Neighbour {
 
 Neighbour neighbourAt(ivec2 at) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
-    const vec4 m = unpackedMoments(imageLoad(moments, inside));
-    return Neighbour(surfaceAt(inside), m.xy, at == inside && m.w > 0.0);
+    const vec4 m = imageLoad(moments, inside);
+    return Neighbour(surfaceAt(inside), momentsBeside(m), at == inside && m.w > 0.0);
 }
 
 /// Adds weighted moments and the weight. `from` is the neighbour's offset.

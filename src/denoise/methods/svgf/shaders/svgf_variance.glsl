@@ -58,11 +58,18 @@ vec4 withoutFirefly(ivec2 at, vec4 light, float frames) {
     return l > limit ? vec4(light.rgb * (limit / l), light.a) : light;
 }
 
+/// The first two moments of a neighbour that count for the variance. Differences between pixels are noise only where nothing else
+/// is known: with several samples, each pixel knows the variance of its own mean.
+vec2 momentsBeside(vec4 texel) {
+    return params.samples > 1.0 ? vec2(0.0, texel.y * texel.y) : unpackedMoments(texel).xy;
+}
+
 /// `sum` has the weighted moments and the weights of all neighbours.
 void storeDeviation(ivec2 at, vec3 sum) {
     const vec2 mean = sum.xy / max(sum.z, 1e-30);
     const float frames = imageLoad(moments, at).w;
-    const float deviation = svgfBoost(BOOST, frames) * sqrt(max(mean.y - mean.x * mean.x, 0.0));
+    const float boost = params.samples > 1.0 ? svgfSampledBoost(frames) : svgfBoost(BOOST, frames);
+    const float deviation = boost * sqrt(max(mean.y - mean.x * mean.x, 0.0));
     vec4 light = vec4(LOAD_HALF4(color, at).rgb, min(deviation, MAX_HALF));
     if (FIREFLIES) light = withoutFirefly(at, light, frames);
     STORE_HALF4(color, at, light);

@@ -15,8 +15,8 @@ void addNeighbour(inout vec3 sum, SurfaceCentre centre, ivec2 at, ivec2 from) {
     const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
     const Surface other = surfaceAt(inside);
     const float weight = from == ivec2(0) ? 1.0 : exp2(surfaceExponent(centre, other, perDepthOf(centre, from)));
-    const vec4 m = unpackedMoments(imageLoad(moments, inside));
-    if (inside == there && m.w > 0.0) sum += weight * vec3(m.xy, 1.0);
+    const vec4 m = imageLoad(moments, inside);
+    if (inside == there && m.w > 0.0) sum += weight * vec3(momentsBeside(m), 1.0);
 }
 
 /// Sums weighted moments and weights over the neighbours in every `step`-th of the 7 rows, from row `first` on.

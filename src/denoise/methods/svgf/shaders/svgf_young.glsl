@@ -42,11 +42,11 @@ struct Sum {
     float squares;  // of weighted deviations
 };
 
-/// The largest r with r^2 frames <= youngRadius^2, which floats compute exactly.
+/// The largest r with r^2 samples <= youngRadius^2, which floats compute exactly.
 int radiusOf(float frames) {
     const float square = float(params.youngRadius * params.youngRadius);
     int radius = 0;
-    while (float((radius + 1) * (radius + 1)) * max(frames, 1.0) <= square) ++radius;
+    while (float((radius + 1) * (radius + 1)) * max(params.samples * frames, 1.0) <= square) ++radius;
     return radius;
 }
 
@@ -67,8 +67,9 @@ void addTap(inout Sum sum, SurfaceCentre centre, ivec2 at, ivec2 from, int radiu
 }
 
 bool isYoung(ivec2 at) {
-    return at.x < int(params.width) && at.y < int(params.height) && imageLoad(moments, at).w < SVGF_YOUNG &&
-           signalAt(at).a != NOTHING_THERE;
+    if (at.x >= int(params.width) || at.y >= int(params.height)) return false;
+    const float frames = imageLoad(moments, at).w;
+    return frames < SVGF_YOUNG && params.samples * frames <= SVGF_YOUNG && signalAt(at).a != NOTHING_THERE;
 }
 
 /// The sum over every `step`-th row, from the number `first` on.
