@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/files/frame_pattern.h"
 #include "base/log.h"
+#include "base/text/format.h"
 #include "cli/console/json_text.h"
 #include "cli/render/picture_output.h"
 #include "commands.h"
@@ -34,7 +35,7 @@ nlohmann::json mergeStill(const MergeOptions& o, const FramePattern& output) {
     checkPictureOutput(path, !sum.header.layers.empty());
     writePicture(path, formatOf(sum.header), sum.sums.means(),
                  metadataOf(sum.header, 0, sum.sums.samples(), std::string(sum.header.value(cameraEntry))));
-    log::info("{} samples of {}x{} from {} files", sum.sums.samples(), sum.header.extent.width,
+    log::info("{} of {}x{} from {} files", countText(sum.sums.samples(), "sample"), sum.header.extent.width,
               sum.header.extent.height, files.size());
     return {{"output", o.output}, {"samples", sum.sums.samples()}, {"files", files.size()}};
 }

@@ -140,7 +140,7 @@ TEST_F(ViewToolsTest, TheWindowShowsThePicture) {
     point();
     EXPECT_LE(worst(0, 460), 1);
     viewer.choose("compare with", "ao");
-    viewer.waitFor("the other side", [&] { return viewer.fact("compared") == "ao, 1 samples"; });
+    viewer.waitFor("the other side", [&] { return viewer.fact("compared") == "ao, 1 sample"; });
     viewer.click("magnifier");
     viewer.waitFor("the magnifier", [&] { return viewer.value("magnifier") == "on"; });
     point();

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
+#include "base/text/format.h"
 #include "cli/cluster/session.h"
 #include "cli/console/interrupt.h"
 #include "cli/console/json_text.h"
@@ -68,9 +69,9 @@ void reportRender(const RenderOptions& o, const gpu::Device& device, const Rende
     }
     if (!o.json) {
         const std::string frames = s.frames > 1 ? fmt::format("{} frames of ", s.framesFinished) : "";
-        log::info("wrote {}: {}{} samples of {}x{} in {}, {:.2f} million rays per second, on {}", o.output,
-                  frames, s.samples, o.width, o.height, timeText(s.timings.renderSeconds), megaRays,
-                  device.info().name);
+        log::info("wrote {}: {}{} of {}x{} in {}, {:.2f} million rays per second, on {}", o.output, frames,
+                  countText(s.samples, "sample"), o.width, o.height, timeText(s.timings.renderSeconds),
+                  megaRays, device.info().name);
         return;
     }
     nlohmann::json object{{"output", o.output},

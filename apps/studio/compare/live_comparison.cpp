@@ -1,6 +1,6 @@
 #include "studio/compare/live_comparison.h"
 
-#include <fmt/format.h>
+#include "base/text/format.h"
 
 namespace limpid::studio {
 namespace {
@@ -46,7 +46,7 @@ void LiveComparison::render(Stage& stage, const State& state, const RenderSettin
     other_.render(std::move(moment));
     ++frames_;
     name_ = choice;
-    if (other_.accumulates()) name_ += fmt::format(", {} samples", other_.samples());
+    if (other_.accumulates()) name_ += ", " + countText(other_.samples(), "sample");
 }
 
 void LiveComparison::update(LiveRender& main, float exposure, bool rendering) {

@@ -49,4 +49,8 @@ std::string joinText(const std::vector<std::string>& parts, std::string_view sep
     return result;
 }
 
+std::string countText(uint64_t count, std::string_view noun) {
+    return formatText(count == 1 ? "{} {}" : "{} {}s", count, noun);
+}
+
 }  // namespace limpid

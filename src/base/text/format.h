@@ -42,4 +42,7 @@ std::string formatText(std::string_view pattern, const Args&... args) {
 /// Returns "a, b, c".
 std::string joinText(const std::vector<std::string>& parts, std::string_view separator = ", ");
 
+/// Returns "1 sample", "2 samples".
+std::string countText(uint64_t count, std::string_view noun);
+
 }  // namespace limpid

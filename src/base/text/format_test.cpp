@@ -26,5 +26,10 @@ TEST(FormatTextTest, Joins) {
     EXPECT_EQ(joinText({"a", "b"}), "a, b");
 }
 
+TEST(FormatTextTest, CountsInThePlural) {
+    EXPECT_EQ(countText(0, "sample"), "0 samples");
+    EXPECT_EQ(countText(1, "sample"), "1 sample");
+}
+
 }  // namespace
 }  // namespace limpid
