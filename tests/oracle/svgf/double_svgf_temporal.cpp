@@ -41,7 +41,7 @@ double varianceOf(const denoise::HostFrame& frame, SvgfSignal signal, size_t p, 
     if (signal != SvgfSignal::Diffuse && !frame.specular.empty())
         squares += double{frame.specular[4 * p + 3]};
     if (!(squares > 0.0) || luminance(c) <= 1e-6) return 0.0;
-    const double ratio = luminance(glm::clamp(x, -largestHalf, largestHalf)) / luminance(c);
+    const double ratio = luminance(x) / luminance(c);
     return std::min(std::min(squares, largestHalf) * ratio * ratio / (samples - 1.0), largestHalf);
 }
 
@@ -249,8 +249,8 @@ SvgfSample svgfSample(const denoise::HostFrame& frame, SvgfSignal signal, size_t
     const DoubleFrame pixels(frame);
     const dvec3 c = signalOf(pixels, signal, p);
     if (!isFiniteInFloat(c)) return {dvec3(0.0), true};
-    const dvec3 x = c / modulationOf(pixels, signal, p, minAlbedo);
-    return {glm::clamp(x, -largestHalf, largestHalf), false, varianceOf(frame, signal, p, x, c)};
+    const dvec3 x = glm::clamp(c / modulationOf(pixels, signal, p, minAlbedo), -largestHalf, largestHalf);
+    return {x, false, varianceOf(frame, signal, p, x, c)};
 }
 
 double svgfDeviation(double m1, double m2, double error) {

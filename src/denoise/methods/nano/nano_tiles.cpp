@@ -4,13 +4,15 @@
 #include <array>
 #include <optional>
 
+#include "base/divide_up.h"
+
 namespace limpid::denoise {
 namespace {
 
 constexpr uint32_t multiple = 1u << (NANO_LEVELS - 1);
 
 uint32_t roundedUp(uint32_t size) {
-    return (size + multiple - 1) / multiple * multiple;
+    return divideUp(size, multiple) * multiple;
 }
 
 /// Parts of one side of a picture.
@@ -27,7 +29,7 @@ struct Parts {
 
 Parts partsOf(uint32_t whole, uint32_t count, uint32_t reach) {
     if (count == 1) return {.count = 1, .size = whole, .step = whole};
-    const uint32_t step = roundedUp((whole + count - 1) / count);
+    const uint32_t step = roundedUp(divideUp(whole, count));
     return {.count = count, .size = std::min(step + 2 * reach, whole), .step = step};
 }
 
