@@ -83,6 +83,7 @@ Preset svgfOfCis565() {
                                     "svgf.phi_normal=0.2",
                                     "svgf.phi_depth=0.35",
                                     "svgf.boost=off",
+                                    "svgf.sample_variance=off",
                                     "svgf.blur_levels=10",
                                     "svgf.mean_levels=0",
                                     "svgf.damp_outliers=off",
@@ -125,12 +126,26 @@ Preset svgfOfThePaper() {
             .integrators = lightIntegrators,
             .denoisers = {"svgf"},
             .jitter = Jitter::Off,
-            .assignments = asInSources(
-                {"svgf.alpha=0.2", "svgf.reflections=off", "svgf.wide=on", "svgf.alpha_moments=0.2",
-                 "svgf.antilag=0", "svgf.fireflies=0", "svgf.young_radius=0", "svgf.stabilisation_alpha=1",
-                 "svgf.levels=5", "svgf.history_level=1", "svgf.phi_normal=128", "svgf.phi_depth=1",
-                 "svgf.boost=off", "svgf.blur_levels=10", "svgf.mean_levels=0", "svgf.damp_outliers=off",
-                 "svgf.lobe_test=0", "svgf.phi_roughness=0", "taa.frames=1"})};
+            .assignments = asInSources({"svgf.alpha=0.2",
+                                        "svgf.reflections=off",
+                                        "svgf.wide=on",
+                                        "svgf.alpha_moments=0.2",
+                                        "svgf.antilag=0",
+                                        "svgf.fireflies=0",
+                                        "svgf.young_radius=0",
+                                        "svgf.stabilisation_alpha=1",
+                                        "svgf.levels=5",
+                                        "svgf.history_level=1",
+                                        "svgf.phi_normal=128",
+                                        "svgf.phi_depth=1",
+                                        "svgf.boost=off",
+                                        "svgf.blur_levels=10",
+                                        "svgf.mean_levels=0",
+                                        "svgf.damp_outliers=off",
+                                        "svgf.lobe_test=0",
+                                        "svgf.phi_roughness=0",
+                                        "svgf.sample_variance=off",
+                                        "taa.frames=1"})};
 }
 
 std::string listed(const std::vector<std::string>& words) {

@@ -140,9 +140,10 @@ class Svgf {
 
     float minAlbedo() const { return settings_.demodulate ? settings_.minAlbedo : 0.0f; }
 
-    /// Per pixel and frame; 1 where their variance is unknown.
+    /// Per pixel and frame; 1 where their variance is unknown or not used.
     float samples() const {
-        return input_.variances ? static_cast<float>(std::max(input_.samples, 1u)) : 1.0f;
+        return input_.variances && settings_.sampleVariance ? static_cast<float>(std::max(input_.samples, 1u))
+                                                            : 1.0f;
     }
 
     /// Converts a mean squared deviation to the variance of the mean.

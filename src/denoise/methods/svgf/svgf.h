@@ -40,6 +40,7 @@ struct SvgfSettings {
     int meanLevels = 1;
     bool dampOutliers = true;
     bool boost = true;
+    bool sampleVariance = true;
     bool position = false;
     bool operator==(const SvgfSettings&) const = default;
 };

@@ -125,6 +125,9 @@ void addNoise(ParamTable<S>& t) {
     t.add("boost", &S::boost,
           "Let the expected noise fall with the length of the history (by 2 / sqrt(frames)); off: use "
           "the noise of one frame");
+    t.add("sample_variance", &S::sampleVariance,
+          "With several samples a pixel, take the noise of a history's first frames from the samples' own "
+          "variance; off: from the pixels around, which takes detail for noise");
     t.add("position", &S::position,
           "Weigh neighbours by distances of points and normals instead of slopes and cosines");
 }
