@@ -35,6 +35,18 @@ inline float medianOf(const std::vector<float>& picture) {
     return *middle;
 }
 
+/// Turns a frame into one of several samples with deviations from none to about the light's luminance.
+inline void addVariances(HostFrame& frame, uint32_t samples) {
+    frame.samples = samples;
+    frame.variances = samples > 1;
+    for (auto* layer : {&frame.diffuse, &frame.specular}) {
+        for (size_t i = 0; i < frame.pixelCount() * 4; i += 4) {
+            const float deviation = (*layer)[i] * static_cast<float>(i * 7919 % 17) / 16.0f;
+            (*layer)[i + 3] = deviation * deviation;
+        }
+    }
+}
+
 class DenoiseTest : public GpuTest {
   protected:
     /// Returns the image that a pass of the last frame wrote, found by the end of its name.

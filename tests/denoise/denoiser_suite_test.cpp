@@ -23,6 +23,9 @@ class DenoiserSuite : public DenoiseTest, public testing::WithParamInterface<std
   protected:
     static const denoise::Denoiser& method() { return *denoise::findDenoiser(GetParam()); }
 
+    /// A network behind SVGF.
+    static bool isOnSvgf() { return method().name == "nano" || method().name == "film"; }
+
     /// Returns the last picture of a sequence, starting with empty histories.
     std::vector<float> denoiseSequence(const SyntheticScene& scene, const DenoiserSettings& settings = {},
                                        int count = frames) {
@@ -32,6 +35,7 @@ class DenoiserSuite : public DenoiseTest, public testing::WithParamInterface<std
         for (int number = 0; number < count; ++number) {
             HostFrame frame = scene.frame(number, columns, rows, 1);
             frame.jitter = jitter_;
+            if (samples_ > 1) addVariances(frame, samples_);
             picture = denoise(method(), frame, settings);
         }
         return picture;
@@ -51,6 +55,7 @@ class DenoiserSuite : public DenoiseTest, public testing::WithParamInterface<std
     }
 
     std::optional<vec2> jitter_;  ///< of every frame of a sequence
+    uint32_t samples_ = 1;        ///< with variances, if there are more
 };
 
 /// What filters light, and not only one channel (visibility_test.cpp).
@@ -192,8 +197,7 @@ TEST_P(DenoiserSuite, EveryParameterMatters) {
     const std::vector<float> defaults = denoiseSequence(scene);
     for (const ParamGroup& group : paramGroups()) {
         if (std::ranges::find(method().groups, group.name) == method().groups.end()) continue;
-        const bool onSvgf = method().name == "nano" || method().name == "film";
-        if (onSvgf && group.name == "svgf") continue;  // the same passes as SVGF's own
+        if (isOnSvgf() && group.name == "svgf") continue;  // the same passes as SVGF's own
         for (const ParamInfo& info : group.infos) {
             const bool flag = std::holds_alternative<bool>(info.defaultValue);
             const std::vector<std::string> values =
@@ -205,8 +209,9 @@ TEST_P(DenoiserSuite, EveryParameterMatters) {
             for (const std::string& text : needed) assign(beside, text);
             const bool rests = name == "taa.still_frames";
             const SyntheticScene& seen = rests ? still : scene;
-            const std::vector<float> plain =
-                needed.empty() && !rests ? defaults : denoiseSequence(seen, beside.denoisers);
+            samples_ = name == "svgf.sample_variance" ? 4 : 1;
+            const bool asUsual = needed.empty() && !rests && samples_ == 1;
+            const std::vector<float> plain = asUsual ? defaults : denoiseSequence(seen, beside.denoisers);
             bool matters = false;
             for (const std::string& value : values) {
                 RenderSettings settings = beside;
@@ -258,8 +263,14 @@ TEST_P(DenoiserSuite, ImagesAndBuffersGiveTheSamePicture) {
     const std::vector<float> images = denoiseSequence(scene);
     filters_ = gpu::Backing::Buffer;
     const std::vector<float> buffers = denoiseSequence(scene);
-    for (size_t i = 0; i < images.size(); ++i)
-        ASSERT_NEAR(buffers[i], images[i], 3e-3f * std::abs(images[i]) + 1e-6f) << i;
+    // The networks amplify the rounding of halves, in few pixels to more than 0.003.
+    const float most = isOnSvgf() ? 1e-2f : 3e-3f;
+    size_t large = 0;
+    for (size_t i = 0; i < images.size(); ++i) {
+        ASSERT_NEAR(buffers[i], images[i], most * std::abs(images[i]) + 1e-6f) << i;
+        if (std::abs(buffers[i] - images[i]) > 3e-3f * std::abs(images[i]) + 1e-6f) ++large;
+    }
+    EXPECT_LE(large, images.size() / 1000);
 }
 
 std::vector<std::string> names(bool colorsOnly) {

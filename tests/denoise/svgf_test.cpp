@@ -176,18 +176,6 @@ class SvgfPassTest : public DenoiseTest, public testing::WithParamInterface<Case
     size_t dimmed_ = 0;                          ///< pixels so far
 };
 
-/// Deviations from none to about the light's luminance.
-void addVariances(HostFrame& frame, uint32_t samples) {
-    frame.samples = samples;
-    frame.variances = samples > 1;
-    for (auto* layer : {&frame.diffuse, &frame.specular}) {
-        for (size_t i = 0; i < frame.pixelCount() * 4; i += 4) {
-            const float deviation = (*layer)[i] * static_cast<float>(i * 7919 % 17) / 16.0f;
-            (*layer)[i + 3] = deviation * deviation;
-        }
-    }
-}
-
 HostFrame SvgfPassTest::frameOf(int number) {
     const SvgfCase& c = std::get<0>(GetParam());
     const bool small = c.resizeAt >= 0 && number >= c.resizeAt;
