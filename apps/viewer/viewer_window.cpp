@@ -228,7 +228,7 @@ void ViewerWindow::handleInput(studio::Session& session, double seconds) {
 void ViewerWindow::handleKeys() {
     const ImGuiIO& io = ImGui::GetIO();
     studio::State& state = panel_.state;
-    const auto pressed = [&](int key) { return !io.WantTextInput && ImGui::IsKeyPressed(key, false); };
+    const auto pressed = [&](int key) { return !Interface::typesText() && ImGui::IsKeyPressed(key, false); };
     if (screen_->display.interface().askedForKeys()) panel_.showsKeys = !panel_.showsKeys;
     if (pressed(GLFW_KEY_ESCAPE)) handleEscape();
     if (io.KeyCtrl) {

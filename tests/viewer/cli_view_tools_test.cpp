@@ -303,7 +303,8 @@ TEST_F(ViewToolsTest, CamerasNumbersAndThePreview) {
     viewer.waitFor("the end of the range", [&] { return viewer.value("ao.radius") == "1000"; });
     viewer.type("field of view", "0");  // its range begins at 0.01, which is less as a float
     viewer.waitFor("the start of the range", [&] { return viewer.value("field of view") == "0.01"; });
-    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+    viewer.type("field of view", "1", 0.03, "Escape");
+    EXPECT_EQ(viewer.ended(), 0) << viewer.get("log");
 }
 
 TEST_F(ViewToolsTest, LayersGoIntoTheFile) {

@@ -93,6 +93,10 @@ class DrivenViewer {
     /// Quits with the keyboard; returns the exit code.
     int leave() {
         xdotool("mousemove 450 1690 key Escape");
+        return ended();
+    }
+    /// Waits for the program's end; returns the exit code.
+    int ended() const {
         waitFor("the end", [&] { return !get("code").empty(); });
         return std::stoi(get("code"));
     }
@@ -160,8 +164,9 @@ class DrivenViewer {
                             static_cast<int>(0.5f * (c.top + c.bottom))));
         waitFor("the window to see a click on " + name, [&] { return number("clicks") > before; });
     }
-    /// Types a number into a slider or drag control, at a fraction of its width.
-    void type(const std::string& name, const std::string& text, double share = 0.03) const {
+    /// Types a number into a slider or drag control, at a fraction of its width. `keys` follow at once.
+    void type(const std::string& name, const std::string& text, double share = 0.03,
+              const std::string& keys = "") const {
         const Control c = reveal(name);
         xdotool(
             "mousemove " + std::to_string(static_cast<int>(c.left + share * (c.right - c.left) + 3)) + " " +
@@ -169,7 +174,7 @@ class DrivenViewer {
             " sleep 0.15 keydown ctrl sleep 0.1 mousedown 1 sleep 0.15 mouseup 1 sleep 0.1 keyup ctrl sleep "
             "0.15 key ctrl+a sleep 0.1 type --delay 30 -- " +
             text);
-        xdotool("sleep 0.2 key Return sleep 0.1");
+        xdotool("sleep 0.2 key Return " + keys + " sleep 0.1");
     }
     void choose(const std::string& name, const std::string& choice) const {
         click(name);

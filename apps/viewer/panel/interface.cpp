@@ -54,6 +54,11 @@ void Interface::begin(bool dark) {
     ImGui::NewFrame();
 }
 
+// ImGui wants text for one picture after its end: a key right after Return would be lost.
+bool Interface::typesText() {
+    return ImGui::GetIO().WantTextInput && ImGui::IsAnyItemActive();
+}
+
 void Interface::apply(const InputEvent& event) {
     ImGuiIO& io = ImGui::GetIO();
     const auto code = static_cast<size_t>(event.code);
@@ -70,7 +75,7 @@ void Interface::apply(const InputEvent& event) {
             io.MouseWheel += event.y;
             break;
         case InputEvent::Kind::Text:
-            askedForKeys_ |= event.code == '?' && !io.WantTextInput;
+            askedForKeys_ |= event.code == '?' && !typesText();
             io.AddInputCharacter(static_cast<unsigned>(event.code));
             break;
         case InputEvent::Kind::Key:

@@ -26,6 +26,8 @@ class Interface {
     /// A question mark was typed, and not into a text.
     bool askedForKeys() const { return askedForKeys_; }
     const Thumbnails& thumbnails() const { return thumbnails_; }
+    /// Whether keys are for a text that is being typed.
+    static bool typesText();
     /// How much larger than nominal everything is drawn.
     float scale() const { return scale_; }
     /// Valid until the next begin().
