@@ -28,6 +28,7 @@ struct SvgfCase {
     int mixesFrom = 0;          ///< before this frame, filtered light is not stabilised
     bool hasNegatives = false;  ///< a quarter of the light is 0, a quarter below 0
     uint32_t samples = 1;       ///< with known variances, if there are more
+    float brightness = 1.0f;    ///< the light's factor
 };
 
 inline SvgfSettings svgfPreset(const char* name) {
@@ -112,6 +113,12 @@ inline std::vector<SvgfCase> svgfCases() {
                  .jumpAt = 6,
                  .hasNans = true,
                  .samples = 16},
+        SvgfCase{.name = "BrightSamples",
+                 .options = moving,
+                 .settings = {.levels = 1},
+                 .frames = 3,
+                 .samples = 4,
+                 .brightness = 1000.0f},
         SvgfCase{.name = "UnusedVariances",
                  .options = moving,
                  .settings = {.levels = 2, .sampleVariance = false},

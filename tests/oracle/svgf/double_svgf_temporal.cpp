@@ -40,9 +40,9 @@ double varianceOf(const denoise::HostFrame& frame, SvgfSignal signal, size_t p, 
     if (signal != SvgfSignal::Specular) squares += double{frame.diffuse[4 * p + 3]};
     if (signal != SvgfSignal::Diffuse && !frame.specular.empty())
         squares += double{frame.specular[4 * p + 3]};
-    if (!(squares > 0.0) || luminance(c) <= 1e-6) return 0.0;
+    if (!(squares > 0.0) || std::isinf(squares) || luminance(c) <= 1e-6) return 0.0;
     const double ratio = luminance(x) / luminance(c);
-    return std::min(std::min(squares, largestHalf) * ratio * ratio / (samples - 1.0), largestHalf);
+    return std::min(squares * ratio * ratio / (samples - 1.0), largestHalf * largestHalf);
 }
 
 std::vector<PreviousSurface> previousSurfaces(const SvgfHistory& history, size_t count) {

@@ -10,6 +10,8 @@ layout(constant_id = 0) const bool TWO_LIGHTS = false;   // light is lightA + li
 layout(constant_id = 5) const bool TWO_ALBEDOS = false;  // albedo likewise
 layout(constant_id = 2) const bool BOOST = true;
 
+const float MOST_VARIANCE = MAX_HALF * MAX_HALF;  // its root is stored
+
 READ_LAYER(1, lightA);
 READ_LAYER(2, lightB);
 READ_LAYER(3, albedoA);
@@ -33,8 +35,8 @@ vec3 demodulated(vec3 light, ivec2 at) {
 /// samples adds to the second one; its samples are divided by the albedo like their mean.
 vec2 momentsOf(vec3 x, vec4 light) {
     const float l = luminance(x), before = luminance(light.rgb), ratio = before > 1e-6 ? l / before : 0.0;
-    const float squares = light.a > 0.0 ? min(light.a, MAX_HALF) : 0.0;  // which also rejects NaN
-    return vec2(l, l * l + min(params.ofMean * squares * ratio * ratio, MAX_HALF));
+    const float squares = light.a > 0.0 && !isinf(light.a) ? light.a : 0.0;  // NaN is not above 0
+    return vec2(l, l * l + min(params.ofMean * ratio * ratio * squares, MOST_VARIANCE));
 }
 
 /// The fourth component of `color`: the expected deviation of the luminance, or SVGF_STILL_YOUNG.
