@@ -152,7 +152,12 @@ typedef enum limpid_input {
      * it hit nothing; 0, negative or NaN: unknown. Needs ROUGHNESS. If REFLECTION_MOTION is missing, the motion of
      * reflections is computed from it. */
     LIMPID_INPUT_HIT_DISTANCE = 12,
-    LIMPID_INPUT_MAX = 32 /* room for more */
+    /* r: with limpid_denoiser_desc::samples, the variance of RADIANCE's luminance (0.2126 r + 0.7152 g + 0.0722 b): of
+     * the pixel's mean, which is s^2 / N, s^2 being the variance of its N samples. NaN, infinite or negative: 0. SVGF,
+     * NANO and FILM take the noise of a history's first frames from it, instead of from the pixels around. */
+    LIMPID_INPUT_RADIANCE_VARIANCE = 13,
+    LIMPID_INPUT_SPECULAR_VARIANCE = 14, /* the same of SPECULAR: with that, both or none */
+    LIMPID_INPUT_MAX = 32                /* room for more */
 } limpid_input;
 
 typedef enum limpid_output {
@@ -228,6 +233,9 @@ typedef struct limpid_denoiser_desc {
     int32_t timings;
     /* Prefix of image and pass names in debuggers; NULL: "limpid/". */
     const char* name;
+    /* Samples per pixel in each frame's light, 1 to 65536; 0: 1. Only counts in frames that have RADIANCE_VARIANCE,
+     * which need 2 or more. */
+    uint32_t samples;
 } limpid_denoiser_desc;
 
 /* Matrices are column-major as in GLSL, element [4 * column + row], and do not include jitter. The previous frame is

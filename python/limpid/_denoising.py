@@ -10,7 +10,7 @@ from limpid._devices import SharedDevices, handle_of, own, watched
 # The accepted component counts of images that may have more components than are read.
 _COMPONENTS = {
     "radiance": (3, 4), "specular": (3, 4), "emission": (3, 4), "albedo": (3, 4), "albedo_specular": (3, 4),
-    "depth": (1,), "roughness": (1,), "hit_distance": (1,),
+    "depth": (1,), "roughness": (1,), "hit_distance": (1,), "radiance_variance": (1,), "specular_variance": (1,),
 }
 # The library's floats have 32 bits. Round so that Python prints 0.2, not 0.20000000298.
 _TYPES = {"bool": bool, "int": int, "float": lambda value: float(str(np.float32(value)))}
@@ -129,6 +129,7 @@ class Denoiser:
     motion_depth: "2d" (only x and y are used, and points are assumed not to move in depth) or "distance" (z is the
         change of the distance from the eye, world units).
     clip_y: the direction of y in clip space: "down" as in Vulkan, "up" as in OpenGL and Direct3D.
+    samples: samples per pixel in each frame's light, 1 to 65536; only counts for frames with radiance_variance.
     timings: True to measure the passes' times (see timings()).
     parameters: a dict of names and values for set().
 
@@ -138,14 +139,15 @@ class Denoiser:
 
     def __init__(self, width, height, method="svgf", *, device=None, signals=1, demodulated=False,
                  normal_encoding="signed", normal_space="world", depth_encoding="distance", far_depth=1e9,
-                 motion_unit="pixels", motion_direction="to_previous", motion_depth="2d", clip_y="down", timings=False,
-                 parameters=None):
+                 motion_unit="pixels", motion_direction="to_previous", motion_depth="2d", clip_y="down", samples=1,
+                 timings=False, parameters=None):
         for name, value in (("width", width), ("height", height)):
             _check_side(name, value)
         if signals not in (1, 2):
             raise ValueError(f"signals: must be 1 or 2, not {signals!r}")
         if not far_depth > 0.0:
             raise ValueError(f"far_depth: {far_depth!r} is not above 0")
+        samples = _arrays.number("samples", samples, 1, 65536)
         choose = _arrays.choose
         description = _denoise.Description(
             method=choose("method", method, _denoise.METHODS), width=width, height=height, signals=signals,
@@ -157,10 +159,11 @@ class Denoiser:
             motion_unit=choose("motion_unit", motion_unit, _denoise.MOTION_UNITS),
             motion_direction=choose("motion_direction", motion_direction, _denoise.MOTION_DIRECTIONS),
             motion_depth=choose("motion_depth", motion_depth, _denoise.MOTION_DEPTHS),
-            clip_y=choose("clip_y", clip_y, _denoise.CLIP_Y), timings=bool(timings))
+            clip_y=choose("clip_y", clip_y, _denoise.CLIP_Y), timings=bool(timings), samples=samples)
         self._method = method
         self._device = _device_of(device)
         self._signals = signals
+        self._samples = samples
         self._clip_y = clip_y
         self._needs_projection = depth_encoding == "device"
         normal_components = (2, 3, 4) if normal_encoding.startswith("octahedral") else (3, 4)
@@ -198,9 +201,9 @@ class Denoiser:
         return self._device
 
     def denoise(self, radiance, normal, depth, *, specular=None, emission=None, albedo=None, albedo_specular=None,
-                motion=None, previous_normal=None, reflection_motion=None, roughness=None, hit_distance=None, id=None,
-                view=None, projection=None, previous_view=None, previous_projection=None, jitter=(0.0, 0.0),
-                reset=False, outputs="color"):
+                motion=None, previous_normal=None, reflection_motion=None, roughness=None, hit_distance=None,
+                radiance_variance=None, specular_variance=None, id=None, view=None, projection=None,
+                previous_view=None, previous_projection=None, jitter=(0.0, 0.0), reset=False, outputs="color"):
         """Denoises the next frame of the sequence and returns the denoised picture, (height, width, 3) float32.
 
         All images are arrays (height, width, components) of float16, float32 or float64; row 0 is the top. float32
@@ -222,6 +225,10 @@ class Denoiser:
         hit_distance: (h, w), length of the ray that found the specular light, from the surface to its first hit, world
             units; 1e9 or more: it hit nothing; 0: unknown. Needs roughness. Without reflection_motion, the motion of
             reflections is computed from it.
+        radiance_variance: (h, w), variance of the radiance's luminance: of the pixel's mean, that of its samples divided
+            by their number, which the denoiser must have been told (samples). "svgf", "nano" and "film" take the noise
+            of a history's first frames from it; other methods ignore it.
+        specular_variance: (h, w), the same of specular; with two signals, both or none.
         id: (h, w), integers from 0 to 2^24, one for each object.
         view, projection: (4, 4), from world to view space and from view to clip space (depth 0 to 1), without jitter.
             Points are column vectors; look_at() and perspective() return such matrices. Without view, the camera is at
@@ -238,13 +245,21 @@ class Denoiser:
         images = {"radiance": radiance, "specular": specular, "emission": emission, "albedo": albedo,
                   "albedo_specular": albedo_specular, "normal": normal, "depth": depth, "motion": motion,
                   "previous_normal": previous_normal, "reflection_motion": reflection_motion,
-                  "roughness": roughness, "hit_distance": hit_distance}
+                  "roughness": roughness, "hit_distance": hit_distance,
+                  "radiance_variance": radiance_variance, "specular_variance": specular_variance}
         if self._signals == 2 and specular is None:
             raise ValueError("specular: is needed with two signals")
         if self._signals == 1 and specular is not None:
             raise ValueError("specular: is for denoisers of two signals; add it to radiance")
         if hit_distance is not None and roughness is None:
             raise ValueError("roughness: is needed with hit_distance")
+        if radiance_variance is not None and self._samples < 2:
+            raise ValueError("radiance_variance: the denoiser needs samples of 2 or more")
+        if self._signals == 2 and (radiance_variance is None) != (specular_variance is None):
+            missing = "radiance_variance" if radiance_variance is None else "specular_variance"
+            raise ValueError(f"{missing}: is needed with the other signal's variance")
+        if self._signals == 1 and specular_variance is not None:
+            raise ValueError("specular_variance: is for denoisers of two signals; add it to radiance_variance")
         names = (outputs,) if isinstance(outputs, str) else tuple(outputs)
         numbers = [_arrays.choose("outputs", name, _denoise.OUTPUTS) for name in names]
         matrices, now = self._matrices(view, projection, previous_view, previous_projection)
@@ -338,8 +353,9 @@ def _point(name, value):
     return float(array[0]), float(array[1])
 
 
-def denoise(radiance, normal, depth, *, specular=None, emission=None, albedo=None, albedo_specular=None, id=None,
-            view=None, projection=None, jitter=(0.0, 0.0), outputs="color", method="svgf", device=None, **options):
+def denoise(radiance, normal, depth, *, specular=None, emission=None, albedo=None, albedo_specular=None,
+            radiance_variance=None, specular_variance=None, id=None, view=None, projection=None, jitter=(0.0, 0.0),
+            outputs="color", method="svgf", device=None, **options):
     """Denoises one still and returns the denoised picture, (height, width, 3) float32.
 
     Images are those of Denoiser.denoise(); if specular is given, there are two signals. `options` are those of
@@ -347,17 +363,21 @@ def denoise(radiance, normal, depth, *, specular=None, emission=None, albedo=Non
 
     method: one of limpid.Denoiser's, or "kpcn", the trained network for stills of about 32 samples per pixel. For
     "kpcn", `options` are those of limpid.Network and the variances and samples of its denoise(); radiance is its
-    diffuse light; albedo_specular, id, the cameras and jitter are ignored. Every call loads the weights, so make a
+    diffuse light, radiance_variance the variance of that; albedo_specular, id, the cameras and jitter are ignored. Every call loads the weights, so make a
     limpid.Network for several stills.
     """
     if method == "kpcn":
         if outputs != "color":
             raise ValueError(f"outputs: {outputs!r} is none of 'color', all that 'kpcn' has")
+        if radiance_variance is not None:
+            options.setdefault("diffuse_variance", radiance_variance)
         network = _network().Network(options.pop("weights", None), device=device,
                                      parameters=options.pop("parameters", None))
-        return network.denoise(radiance, normal, depth, specular=specular, emission=emission, albedo=albedo, **options)
+        return network.denoise(radiance, normal, depth, specular=specular, emission=emission, albedo=albedo,
+                               specular_variance=specular_variance, **options)
     size = _arrays.image("radiance", radiance, _radiance_components(method)).shape
     denoiser = Denoiser(size[1], size[0], method, device=device, signals=1 if specular is None else 2, **options)
     return denoiser.denoise(radiance, normal, depth, specular=specular, emission=emission, albedo=albedo,
-                            albedo_specular=albedo_specular, id=id, view=view, projection=projection, jitter=jitter,
-                            outputs=outputs)
+                            albedo_specular=albedo_specular, radiance_variance=radiance_variance,
+                            specular_variance=specular_variance, id=id, view=view, projection=projection,
+                            jitter=jitter, outputs=outputs)

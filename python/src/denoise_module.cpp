@@ -214,7 +214,8 @@ class Denoiser {
 
 limpid_denoiser_desc describe(int method, uint32_t width, uint32_t height, uint32_t signals, bool demodulated,
                               int normalEncoding, int normalSpace, int depth, float farDepth, int motionUnit,
-                              int motionDirection, int motionDepth, int clipY, bool timings) {
+                              int motionDirection, int motionDepth, int clipY, bool timings,
+                              uint32_t samples) {
     limpid_denoiser_desc desc{};
     desc.size = sizeof desc;
     desc.method = static_cast<limpid_method>(method);
@@ -231,6 +232,7 @@ limpid_denoiser_desc describe(int method, uint32_t width, uint32_t height, uint3
     desc.motion_depth = static_cast<limpid_motion_depth>(motionDepth);
     desc.clip_y = static_cast<limpid_clip_y>(clipY);
     desc.timings = timings ? 1 : 0;
+    desc.samples = samples;
     return desc;
 }
 
@@ -287,7 +289,9 @@ void addTables(py::module_& m) {
               {"reflection_motion", LIMPID_INPUT_REFLECTION_MOTION},
               {"id", LIMPID_INPUT_ID},
               {"roughness", LIMPID_INPUT_ROUGHNESS},
-              {"hit_distance", LIMPID_INPUT_HIT_DISTANCE}});
+              {"hit_distance", LIMPID_INPUT_HIT_DISTANCE},
+              {"radiance_variance", LIMPID_INPUT_RADIANCE_VARIANCE},
+              {"specular_variance", LIMPID_INPUT_SPECULAR_VARIANCE}});
     addNames(m, "OUTPUTS",
              {{"color", LIMPID_OUTPUT_COLOR},
               {"radiance", LIMPID_OUTPUT_RADIANCE},
@@ -317,7 +321,8 @@ PYBIND11_MODULE(_denoise, m) {
         .def(py::init(&describe), py::kw_only(), py::arg("method"), py::arg("width"), py::arg("height"),
              py::arg("signals"), py::arg("demodulated"), py::arg("normal_encoding"), py::arg("normal_space"),
              py::arg("depth_encoding"), py::arg("far_depth"), py::arg("motion_unit"),
-             py::arg("motion_direction"), py::arg("motion_depth"), py::arg("clip_y"), py::arg("timings"));
+             py::arg("motion_direction"), py::arg("motion_depth"), py::arg("clip_y"), py::arg("timings"),
+             py::arg("samples"));
     py::class_<Denoiser, std::unique_ptr<Denoiser, DestroyUnlocked<Denoiser>>>(m, "Denoiser")
         .def(py::init<std::shared_ptr<Device>, const limpid_denoiser_desc&>(), Unlocked())
         .def("denoise", &Denoiser::denoise)

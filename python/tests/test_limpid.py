@@ -190,20 +190,35 @@ class ShapeTest(unittest.TestCase):
         self.assertNames("radiance", self.denoiser.denoise, **{**still(), "radiance": None})
         self.assertNames("specular", self.denoiser.denoise, **still(), specular=still()["radiance"])
         self.assertNames("roughness", self.denoiser.denoise, **still(), hit_distance=still()["depth"])
-        two = limpid.Denoiser(WIDTH, HEIGHT, device=device(), signals=2)
+        two = limpid.Denoiser(WIDTH, HEIGHT, device=device(), signals=2, samples=4)
         self.assertNames("specular", two.denoise, **still())
+        light, depth = still()["radiance"], still()["depth"]
+        self.assertNames("specular_variance", two.denoise, **still(), specular=light, radiance_variance=depth)
+        self.assertNames("radiance_variance", two.denoise, **still(), specular=light, specular_variance=depth)
+        self.assertNames("specular_variance", self.denoiser.denoise, **still(), specular_variance=depth)
+        self.assertNames("radiance_variance", self.denoiser.denoise, **still(), radiance_variance=depth)
         with_buffer = limpid.Denoiser(WIDTH, HEIGHT, "temporal", device=device(), depth_encoding="device")
         self.assertNames("projection", with_buffer.denoise, **still())
 
     def test_wrong_options_name_the_argument(self):
         for name, value in (("method", "nlm"), ("signals", 3), ("normal_encoding", "rgb"), ("normal_space", "object"),
                             ("depth_encoding", "z"), ("far_depth", 0), ("motion_unit", "px"), ("motion_depth", "3d"),
-                            ("motion_direction", "back"), ("clip_y", "left")):
+                            ("motion_direction", "back"), ("clip_y", "left"), ("samples", 0)):
             with self.subTest(name):
                 self.assertNames(name, limpid.Denoiser, WIDTH, HEIGHT, device=device(), **{name: value})
         self.assertNames("width", limpid.Denoiser, 0, HEIGHT, device=device())
         self.assertNames("height", self.denoiser.resize, WIDTH, 1.5)
         self.assertNames("outputs", self.denoiser.denoise, **still(), outputs="clean")
+
+    def test_known_noise_decides_how_much_is_filtered(self):
+        inputs = still()
+        inputs["radiance"] = np.random.default_rng(1).uniform(0.4, 0.6, (HEIGHT, WIDTH, 3)).astype(np.float32)
+        changes = []
+        for variance in 0.0, 1.0:
+            known = np.full((HEIGHT, WIDTH), variance)
+            clean = limpid.denoise(**inputs, radiance_variance=known, samples=32, device=device())
+            changes.append(np.abs(clean - inputs["radiance"])[inputs["depth"] > 0].mean())
+        self.assertLess(changes[0], 0.5 * changes[1])
 
     def test_half_double_and_strided_arrays_give_the_same(self):
         inputs = {name: value.astype(np.float16).astype(np.float32) for name, value in still().items()}

@@ -43,6 +43,10 @@ int main(void) {
     VALUE(LIMPID_INPUT_PREVIOUS_NORMAL);
     VALUE(LIMPID_INPUT_REFLECTION_MOTION);
     VALUE(LIMPID_INPUT_ID);
+    VALUE(LIMPID_INPUT_ROUGHNESS);
+    VALUE(LIMPID_INPUT_HIT_DISTANCE);
+    VALUE(LIMPID_INPUT_RADIANCE_VARIANCE);
+    VALUE(LIMPID_INPUT_SPECULAR_VARIANCE);
     VALUE(LIMPID_INPUT_MAX);
     printf("enum limpid_output %zu\n", sizeof(limpid_output));
     VALUE(LIMPID_OUTPUT_COLOR);
@@ -102,6 +106,7 @@ int main(void) {
     MEMBER(limpid_denoiser_desc, frames_in_flight);
     MEMBER(limpid_denoiser_desc, timings);
     MEMBER(limpid_denoiser_desc, name);
+    MEMBER(limpid_denoiser_desc, samples);
     STRUCT(limpid_camera);
     MEMBER(limpid_camera, view);
     MEMBER(limpid_camera, projection);

@@ -34,13 +34,14 @@ class HostFramesTest : public DenoiseTest {
     static void TearDownTestSuite() { limpid_device_destroy(std::exchange(device_, nullptr)); }
 
     void create(limpid_method method, uint32_t signals = 2,
-                limpid_motion_depth motionDepth = LIMPID_MOTION_DISTANCE) {
+                limpid_motion_depth motionDepth = LIMPID_MOTION_DISTANCE, uint32_t samples = 0) {
         limpid_denoiser_desc desc = {sizeof desc};
         desc.method = method;
         desc.width = width;
         desc.height = height;
         desc.signals = signals;
         desc.motion_depth = motionDepth;
+        desc.samples = samples;
         ASSERT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_OK) << limpid_last_error();
     }
 
@@ -118,6 +119,93 @@ TEST_F(HostFramesTest, SvgfAndNetworksAreTheSameInsideAndOutside) {
         EXPECT_LT(rmsDifference(result, truth), 0.5 * rmsDifference(embeddable(scene, 5).diffuse, truth));
         limpid_denoiser_destroy(std::exchange(denoiser_, nullptr));
     }
+}
+
+/// Light of 4 samples a pixel and the variances of its means, as the interface takes them.
+struct SampledFrame {
+    static constexpr uint32_t samples = 4;
+
+    explicit SampledFrame(HostFrame of) : frame(std::move(of)) {
+        addVariances(frame, samples);
+        for (size_t i = 3; i < frame.diffuse.size(); i += 4) {
+            radiance.push_back(frame.diffuse[i] / (samples - 1));
+            specular.push_back(frame.specular[i] / (samples - 1));
+        }
+    }
+    limpid_host_frame given() {
+        limpid_host_frame result = hostFrame(frame, depths, ids, color);
+        result.inputs[LIMPID_INPUT_RADIANCE_VARIANCE] = {radiance.data(), 1, 0, 0};
+        result.inputs[LIMPID_INPUT_SPECULAR_VARIANCE] = {specular.data(), 1, 0, 0};
+        return result;
+    }
+
+    HostFrame frame;
+    std::vector<float> radiance, specular, depths, ids, color;
+};
+
+TEST_F(HostFramesTest, VariancesAreTheSameInsideAndOutside) {
+    const SyntheticScene scene({.objectMoves = true});
+    for (const uint32_t signals : {1u, 2u}) {
+        SCOPED_TRACE(signals);
+        create(LIMPID_METHOD_SVGF, signals, LIMPID_MOTION_DISTANCE, SampledFrame::samples);
+        DenoiserSettings settings;
+        settings.svgf.separate = signals == 2;
+        graph_.resetHistories();
+        for (int number = 0; number < 2; ++number) {
+            SampledFrame sampled(embeddable(scene, number));
+            limpid_host_frame given = sampled.given();
+            ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+            filters_ = gpu::filterChoice(device()).backing;
+            const auto inside = denoise(*denoise::findDenoiser("svgf"), sampled.frame, settings);
+            EXPECT_LT(rmsDifference(sampled.color, inside), 2e-3);
+            if (number > 0) continue;
+            const std::vector<float> known = sampled.color;
+            given.reset = 1;
+            given.inputs[LIMPID_INPUT_RADIANCE_VARIANCE] = given.inputs[LIMPID_INPUT_SPECULAR_VARIANCE] = {};
+            ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+            EXPECT_GT(rmsDifference(sampled.color, known), 1e-2) << "they matter";
+            given = sampled.given();
+            given.reset = 1;
+            ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+            EXPECT_EQ(sampled.color, known);
+        }
+        limpid_denoiser_destroy(std::exchange(denoiser_, nullptr));
+    }
+}
+
+TEST_F(HostFramesTest, VariancesThatAreNoNumbersCountAsNone) {
+    create(LIMPID_METHOD_SVGF, 2, LIMPID_MOTION_DISTANCE, SampledFrame::samples);
+    SampledFrame sampled(embeddable(SyntheticScene({}), 0));
+    const float bad[] = {0.0f, -1.0f, NAN, INFINITY};
+    std::vector<float> none;
+    for (const float value : bad) {
+        std::ranges::fill(sampled.radiance, value);
+        std::ranges::fill(sampled.specular, value);
+        limpid_host_frame given = sampled.given();
+        given.reset = 1;
+        ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+        if (none.empty()) none = sampled.color;
+        EXPECT_EQ(sampled.color, none) << value;
+    }
+}
+
+TEST_F(HostFramesTest, SaysWhatVariancesLack) {
+    SampledFrame sampled(embeddable(SyntheticScene({}), 0));
+    create(LIMPID_METHOD_SVGF);
+    limpid_host_frame given = sampled.given();
+    EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("samples of 2 or more, not 0"));
+    limpid_denoiser_destroy(std::exchange(denoiser_, nullptr));
+    create(LIMPID_METHOD_SVGF, 2, LIMPID_MOTION_DISTANCE, SampledFrame::samples);
+    given.inputs[LIMPID_INPUT_SPECULAR_VARIANCE] = {};
+    EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("'specular_variance' is missing"));
+    limpid_denoiser_desc desc = {sizeof desc};
+    desc.width = desc.height = 8;
+    desc.samples = 65537;
+    limpid_denoiser* denoiser = nullptr;
+    EXPECT_EQ(limpid_denoiser_create(device_, &desc, &denoiser), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("samples: at most 65536, not 65537"));
 }
 
 /// One float a pixel in and out, and no albedo.
@@ -373,6 +461,11 @@ TEST_F(HostFramesTest, MemoryIsKnownBeforehand) {
     constexpr uint64_t noSecond = 8 + 4;  // one pixel of light and of stable light that nothing writes
     EXPECT_EQ(one, pixels * 56 + tiles * 20 + largeTiles * 4 + standIn + noSecond);
     EXPECT_EQ(two, pixels * 112 + tiles * 40 + largeTiles * 8 + standIn);
+    uint64_t sampled = 0;
+    desc.samples = 2;
+    ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &sampled), LIMPID_OK);
+    EXPECT_EQ(sampled, two + pixels * 2 * 16);
+    desc.samples = 0;
     uint64_t nano = 0;
     desc.method = LIMPID_METHOD_NANO;
     ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &nano), LIMPID_OK);

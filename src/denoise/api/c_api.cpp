@@ -1,5 +1,6 @@
 // The C interface (limpid/denoise.h): devices, denoisers, parameters.
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "denoise/api/c_device.h"
@@ -42,21 +43,39 @@ gpu::GraphOptions graphOptions(const limpid_denoiser_desc& desc) {
 }
 
 gpu::ImageHandle& imageOf(IngestImages& images, size_t input) {
-    gpu::ImageHandle IngestImages::*const members[] = {&IngestImages::radiance,
-                                                       &IngestImages::specular,
-                                                       &IngestImages::emission,
-                                                       &IngestImages::albedo,
-                                                       &IngestImages::albedoSpecular,
-                                                       &IngestImages::normal,
-                                                       &IngestImages::depth,
-                                                       &IngestImages::motion,
-                                                       &IngestImages::previousNormal,
-                                                       &IngestImages::reflectionMotion,
-                                                       &IngestImages::id,
-                                                       &IngestImages::roughness,
-                                                       &IngestImages::hitDistance};
-    if (input >= std::size(members)) throw UsageError(formatText("there is no input {}", input));
+    constexpr std::array<gpu::ImageHandle IngestImages::*, inputCount> members{
+        &IngestImages::radiance,
+        &IngestImages::specular,
+        &IngestImages::emission,
+        &IngestImages::albedo,
+        &IngestImages::albedoSpecular,
+        &IngestImages::normal,
+        &IngestImages::depth,
+        &IngestImages::motion,
+        &IngestImages::previousNormal,
+        &IngestImages::reflectionMotion,
+        &IngestImages::id,
+        &IngestImages::roughness,
+        &IngestImages::hitDistance,
+        &IngestImages::radianceVariance,
+        &IngestImages::specularVariance};
+    if (input >= members.size()) throw UsageError(formatText("there is no input {}", input));
     return images.*members[input];
+}
+
+/// Throws UsageError if one of two lights has a variance and the other has none, or the number of samples is
+/// missing.
+void requireVariances(const limpid_denoiser_desc& desc, const IngestImages& images) {
+    const bool radiance{images.radianceVariance}, specular{images.specularVariance};
+    if (images.specular && radiance != specular)
+        throw UsageError(formatText(
+            "the input '{}' is missing",
+            inputName(radiance ? LIMPID_INPUT_SPECULAR_VARIANCE : LIMPID_INPUT_RADIANCE_VARIANCE)));
+    if (radiance && desc.samples < 2)
+        throw UsageError(
+            formatText("the input 'radiance_variance' needs limpid_denoiser_desc::samples of 2 or "
+                       "more, not {}",
+                       desc.samples));
 }
 
 void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images) {
@@ -68,6 +87,7 @@ void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images)
     require(images.depth, LIMPID_INPUT_DEPTH);
     if (desc.signals == 2) require(images.specular, LIMPID_INPUT_SPECULAR);
     if (images.hitDistance) require(images.roughness, LIMPID_INPUT_ROUGHNESS);
+    requireVariances(desc, images);
 }
 
 std::vector<DryFrame> dryFrames() {
@@ -97,7 +117,8 @@ void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, co
     constexpr gpu::ForeignImage nowhere{.image = 1, .view = 1};
     graph.beginFrame();
     IngestImages images;
-    for (size_t input = 0; input <= LIMPID_INPUT_HIT_DISTANCE; ++input) {
+    for (size_t input = 0; input < inputCount; ++input) {
+        if (desc.samples < 2 && input >= LIMPID_INPUT_RADIANCE_VARIANCE) continue;
         const bool needed = input == LIMPID_INPUT_SPECULAR && desc.signals == 2;
         if (!needed &&
             std::ranges::find(frame.without, static_cast<limpid_input>(input)) != frame.without.end())

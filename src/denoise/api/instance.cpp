@@ -23,6 +23,8 @@ static_assert(methodNames[LIMPID_METHOD_SVGF] == "svgf" && methodNames[LIMPID_ME
               methodNames[LIMPID_METHOD_NANO] == "nano" && methodNames[LIMPID_METHOD_FILM] == "film" &&
               methodNames.size() == LIMPID_METHOD_FILM + 1);
 
+constexpr uint32_t mostSamples = 65536;
+
 /// Calls `visit(table, settings)` for each group that the method reads.
 template <typename Settings, typename Visit>
 void forEachGroupOf(limpid_method method, Settings& settings, const Visit& visit) {
@@ -131,6 +133,8 @@ void check(const limpid_denoiser_desc& desc) {
             formatText("images of {} x {} pixels: each side has 1 to 32768", desc.width, desc.height));
     if (!(desc.far_depth >= 0.0f))
         throw UsageError(formatText("far_depth: {} is negative or not a number", desc.far_depth));
+    if (desc.samples > mostSamples)
+        throw UsageError(formatText("samples: at most {}, not {}", mostSamples, desc.samples));
     if (desc.frames_in_flight > 8)
         throw UsageError(formatText("frames_in_flight: at most 8, not {}", desc.frames_in_flight));
 }
@@ -177,6 +181,7 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
                                  {.twoSignals = desc.signals == 2,
                                   .layers = method.readsLayers || antialiases,
                                   .albedo = !method.oneChannel,
+                                  .samples = method.readsVariances ? desc.samples : 1,
                                   .filters = choice.backing});
     input.choose(choice);
     input.jitter = params.motion.jitter;
@@ -187,10 +192,21 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
 }
 
 const char* inputName(size_t input) {
-    constexpr std::array<const char*, 13> names{
-        "radiance", "specular",  "emission",    "albedo",          "albedo_specular",
-        "normal",   "depth",     "motion",      "previous_normal", "reflection_motion",
-        "id",       "roughness", "hit_distance"};
+    constexpr std::array<const char*, inputCount> names{"radiance",
+                                                        "specular",
+                                                        "emission",
+                                                        "albedo",
+                                                        "albedo_specular",
+                                                        "normal",
+                                                        "depth",
+                                                        "motion",
+                                                        "previous_normal",
+                                                        "reflection_motion",
+                                                        "id",
+                                                        "roughness",
+                                                        "hit_distance",
+                                                        "radiance_variance",
+                                                        "specular_variance"};
     return names.at(input);
 }
 

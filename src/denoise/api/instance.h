@@ -44,6 +44,7 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
                             const IngestParams& params, const gpu::FilterChoice& choice, bool signalsToo,
                             gpu::ImageHandle target);
 
+inline constexpr size_t inputCount = LIMPID_INPUT_SPECULAR_VARIANCE + 1;
 /// Returns the name of an input for messages and debuggers, such as "radiance".
 const char* inputName(size_t input);
 /// Likewise of the outputs, in the order of limpid_output.

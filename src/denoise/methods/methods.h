@@ -22,10 +22,11 @@ struct FilterSettings {
 struct Method {
     std::string_view name, help;
     std::span<const std::string_view> groups;
-    bool readsLayers;   ///< normal or depth, not only the surfaces
-    bool oneChannel;    ///< filters visibility, the first component of diffuse and emission; not light
-    bool keepsHistory;  ///< accumulates light over frames, along the motion
-    uint32_t samples;   ///< what it is made for, per pixel and frame
+    bool readsLayers;     ///< normal or depth, not only the surfaces
+    bool readsVariances;  ///< DenoiserInput::variances
+    bool oneChannel;      ///< filters visibility, the first component of diffuse and emission; not light
+    bool keepsHistory;    ///< accumulates light over frames, along the motion
+    uint32_t samples;     ///< what it is made for, per pixel and frame
     /// Records one frame.
     DenoiserOutput (*record)(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
 };

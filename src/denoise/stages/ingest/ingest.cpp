@@ -6,6 +6,7 @@
 #include "ingest_layers.comp.h"
 #include "ingest_reflection.comp.h"
 #include "ingest_reflection_buffers.comp.h"
+#include "ingest_variance.comp.h"
 #include "ingest_white.comp.h"
 
 namespace limpid::denoise {
@@ -98,6 +99,34 @@ ImageHandle whiteAlbedo(FrameGraph& graph) {
     return white;
 }
 
+ImageHandle withVariance(FrameGraph& graph, const IngestParams& params, const std::string& name,
+                         ImageHandle light, ImageHandle variance, uint32_t samples) {
+    struct {
+        uint32_t width, height;
+        float ofVariance;
+    } const given{params.width, params.height, static_cast<float>(samples - 1)};
+    const ImageHandle result = make(graph, params, name, Format::RGBA32Float);
+    graph.dispatch({.pass = "ingest/variance " + name,
+                    .shader = shaders::ingest_variance_comp,
+                    .bindings = {{"lightIn", light}, {"varianceIn", variance}, {"light", result}},
+                    .params = gpu::paramsOf(given),
+                    .constants = {},
+                    .extent = {params.width, params.height}});
+    return result;
+}
+
+/// Replaces the light by that whose alpha is set (DenoiserInput::variances).
+void addVariances(FrameGraph& graph, const IngestImages& images, const IngestParams& params, uint32_t samples,
+                  DenoiserInput& input) {
+    input.diffuse = withVariance(graph, params, "radiance", input.diffuse, images.radianceVariance, samples);
+    if (images.specular) {
+        input.specular =
+            withVariance(graph, params, "specular", input.specular, images.specularVariance, samples);
+    }
+    input.samples = samples;
+    input.variances = true;
+}
+
 }  // namespace
 
 DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const IngestParams& given,
@@ -122,6 +151,8 @@ DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const Ingest
     input.albedo = images.albedo;
     input.albedoSpecular = images.albedoSpecular;
     input.roughness = images.roughness;
+    if (needs.samples > 1 && images.radianceVariance)
+        addVariances(graph, images, params, needs.samples, input);
     if (!needs.albedo) return input;
     const bool needsBoth = needs.twoSignals && !input.albedoSpecular;
     if (!input.albedo || needsBoth) {

@@ -13,8 +13,9 @@ namespace limpid::denoise {
 struct IngestImages {
     gpu::ImageHandle radiance, specular, emission, albedo, albedoSpecular;
     gpu::ImageHandle normal, depth, motion, previousNormal, reflectionMotion;
-    gpu::ImageHandle roughness, hitDistance;  ///< both or none
-    gpu::ImageHandle id;                      ///< unsigned integers
+    gpu::ImageHandle roughness, hitDistance;              ///< both or none
+    gpu::ImageHandle id;                                  ///< unsigned integers
+    gpu::ImageHandle radianceVariance, specularVariance;  ///< both or none; with specular, if that is given
 };
 
 /// What the method that follows reads.
@@ -22,13 +23,15 @@ struct IngestNeeds {
     bool twoSignals = false;
     bool layers = false;  ///< normal, depth and motion, besides the surfaces
     bool albedo = true;
+    uint32_t samples = 1;  ///< per pixel, if the method reads the light's variance
     gpu::Backing filters = gpu::Backing::Image;
 };
 
 /// What filters read of the frame. Light, albedo, ids, motion and previous normals are the caller's
-/// images themselves; normals and distances are converted. Passes: "ingest"; "ingest/reflection" and
-/// "ingest/layers" if there is something to do for them; "ingest/white" if an albedo is missing. Radiance,
-/// normal and depth are required.
+/// images themselves, unless its variance is given and read; normals and distances are converted. Passes:
+/// "ingest"; "ingest/reflection", "ingest/layers", "ingest/variance radiance" and "ingest/variance specular"
+/// if there is something to do for them; "ingest/white" if an albedo is missing. Radiance, normal and depth
+/// are required.
 DenoiserInput ingest(gpu::FrameGraph& graph, const IngestImages& images, const IngestParams& params,
                      const IngestNeeds& needs);
 
