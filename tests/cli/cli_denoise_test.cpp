@@ -148,10 +148,10 @@ TEST_F(CliDenoiseTest, WhatIsMissingIsNamed) {
 TEST_F(CliDenoiseTest, WrongUsageIsRefusedWithTheChoices) {
     Result result = run("denoise a.exr -o " + path("b.exr") + " --denoiser nlm");
     EXPECT_EQ(result.code, 2);
-    EXPECT_THAT(result.output, HasSubstr("the denoisers are none svgf atrous temporal"));
+    EXPECT_THAT(result.output, HasSubstr("the denoisers are none svgf nano film kpcn"));
     result = run("render builtin:cornell -o " + path("a.png") + " --denoiser magic");
     EXPECT_EQ(result.code, 2);
-    EXPECT_THAT(result.output, HasSubstr("the denoisers are none svgf atrous temporal"));
+    EXPECT_THAT(result.output, HasSubstr("the denoisers are none svgf nano film kpcn"));
     result = run("render builtin:cornell -o " + path("a.png") + " --integrator magic");
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output, HasSubstr("the integrators are path direct ao gbuffer preview"));

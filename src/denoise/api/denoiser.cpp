@@ -34,10 +34,23 @@ constexpr std::array<std::string_view, 2> kpcnGroups{"kpcn", "taa"};
              .oneChannel = method::oneChannel,         \
              .keepsHistory = method::keepsHistory,     \
              .samples = method::samples},
-constexpr std::array all{LIMPID_METHODS(LIMPID_ROW) Denoiser{
+constexpr std::array unordered{LIMPID_METHODS(LIMPID_ROW) Denoiser{
     "kpcn", "kernels predicted by a trained network: each frame by itself, of about 32 samples", recordKpcn,
     kpcnGroups, true, true, false, false, 32}};
 #undef LIMPID_ROW
+
+/// What most people want comes first in lists; limpid_method numbers methods by their age.
+constexpr std::array<std::string_view, 4> first{"svgf", "nano", "film", "kpcn"};
+
+constexpr auto all = [] {
+    std::array<Denoiser, unordered.size()> ordered{};
+    size_t count = 0;
+    for (const std::string_view name : first)
+        ordered[count++] = *std::ranges::find(unordered, name, &Denoiser::name);
+    for (const Denoiser& denoiser : unordered)
+        if (std::ranges::find(first, denoiser.name) == first.end()) ordered[count++] = denoiser;
+    return ordered;
+}();
 
 }  // namespace
 

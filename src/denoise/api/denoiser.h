@@ -37,7 +37,7 @@ struct Denoiser {
     std::string_view help;
     /// Records one frame. Throws Error if a network is missing.
     DenoiserOutput (*record)(gpu::FrameGraph&, const DenoiserInput&, const DenoiserSettings&,
-                             const DenoiserNetworks&);
+                             const DenoiserNetworks&) = nullptr;
     /// The parameter groups that it uses.
     std::span<const std::string_view> groups;
     bool network = false;  ///< needs one of DenoiserNetworks, and frames with variances of several samples
@@ -47,6 +47,7 @@ struct Denoiser {
     uint32_t samples = 1;         ///< Method::samples
 };
 
+/// In the order of lists for users.
 std::span<const Denoiser> denoisers();
 /// Returns null if there is no denoiser of that name.
 const Denoiser* findDenoiser(std::string_view name);

@@ -91,7 +91,7 @@ TEST(Presets, WhatIsAskedForWinsOverPresetsAndDefaults) {
     EXPECT_EQ(pipelineFor(course, {"ao", "temporal"}, {}), parsePipeline("ao", "temporal"));
     EXPECT_THAT(faultOf(none, {"nothing", ""}),
                 HasSubstr("the integrators are path direct ao gbuffer preview"));
-    EXPECT_THAT(faultOf(none, {"", "nothing"}), HasSubstr("the denoisers are none svgf atrous temporal"));
+    EXPECT_THAT(faultOf(none, {"", "nothing"}), HasSubstr("the denoisers are none svgf nano film kpcn"));
 }
 
 TEST(Presets, AnIntegratorThatTakesNoDenoiserIsRefusedOnlyWhereBothAreAskedFor) {
