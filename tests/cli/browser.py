@@ -92,7 +92,7 @@ class Browser:
         self.session = self.call('Target.attachToTarget', targetId=page, flatten=True)['sessionId']
         return earlier
 
-    def wait(self, expression, what, seconds=20):
+    def wait(self, expression, what, seconds=120):
         """Until the expression is true in the page; its value is returned."""
         deadline = time.monotonic() + seconds
         while True:
