@@ -50,7 +50,10 @@ class Weights {
         }
         return layer;
     }
-    bool empty() const { return bytes_.empty(); }
+    /// Behind the last layer there is only what fills the last row.
+    bool atEnd() const {
+        return std::ranges::all_of(bytes_, [](std::byte byte) { return byte == std::byte{0}; });
+    }
 
   private:
     double nextHalf() {
@@ -86,7 +89,7 @@ std::array<Level, levelCount> networkOf(const NanoShapeOf& shape, std::span<cons
         }
         levels[i].logits = weights.next(widths[i], logitsAt(i), 1);
     }
-    if (!weights.empty()) throw Error("too many weights");
+    if (!weights.atEnd()) throw Error("too many weights");
     return levels;
 }
 

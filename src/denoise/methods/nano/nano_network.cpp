@@ -77,7 +77,10 @@ NanoNetwork makeNanoNetwork(const std::string& name, const NanoShape& shape, con
         level.logits =
             layout.add(widths[i], 0, 2 * (i == 0 ? NANO_FINEST_LOGIT_GROUPS : NANO_LOGIT_GROUPS), 1);
     }
-    network.weights = dataOf(name, file, layout.bytes());
+    const std::span<const std::byte> data = dataOf(name, file, layout.bytes());
+    network.weights.assign(data.begin(), data.end());
+    constexpr size_t row = NANO_WEIGHTS_WIDTH * texelBytes;
+    network.weights.resize((data.size() + row - 1) / row * row);
     return network;
 }
 

@@ -52,7 +52,7 @@ struct NanoNetwork {
     std::string name;  ///< its passes' names begin with it
     std::array<NanoLevel, NANO_LEVELS> levels;
     NanoShares shares;
-    std::span<const std::byte> weights;  ///< texels of eight halves
+    std::vector<std::byte> weights;  ///< texels of eight halves; rows of NANO_WEIGHTS_WIDTH, filled with 0
 };
 
 /// `file`: of weights, as training/limpid_training/nano/weights.py writes them. Throws Error if it does not

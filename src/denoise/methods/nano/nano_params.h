@@ -15,6 +15,10 @@ LIMPID_CONST int NANO_LEVELS = 5;     // resolutions; each halves the one before
 LIMPID_CONST int NANO_FEATURES = 24;  // that the network sees of a pixel
 LIMPID_CONST int NANO_GROUP = 8;      // channels in a texel of a buffer, as halves
 LIMPID_CONST int NANO_PIXELS = 4;     // in a row, that one invocation of a convolution computes
+// The same of features and filters where filters read images, as on CPUs: pixels share the loads of weights
+// there. It divides 2^(NANO_LEVELS - 1).
+LIMPID_CONST int NANO_IMAGE_PIXELS = 4;
+LIMPID_CONST uint NANO_WEIGHTS_WIDTH = 1024u;  // texels in a row of the weights, if they are an image
 // A workgroup of a convolution on cooperative matrices: columns of pixels, and subgroups.
 LIMPID_CONST uint NANO_COLUMNS = 16u, NANO_SUBGROUPS = 8u, NANO_SMALL_SUBGROUPS = 4u;
 // The filter: a pixel has (2 reach + 1)^2 taps of its level and NANO_COARSER_TAPS of the next coarser one. A

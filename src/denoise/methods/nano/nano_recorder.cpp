@@ -5,16 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "base/divide_up.h"
 #include "denoise/methods/methods.h"
 #include "denoise/methods/nano/nano_matrices.h"
 #include "denoise/methods/nano/nano_tiles.h"
 #include "nano_convolve.comp.h"
+#include "nano_convolve_buffers.comp.h"
 #include "nano_features.comp.h"
 #include "nano_features_buffers.comp.h"
 #include "nano_filter.comp.h"
+#include "nano_filter_buffers.comp.h"
 #include "nano_finest.comp.h"
 #include "nano_finest_buffers.comp.h"
 #include "nano_pool.comp.h"
+#include "nano_pool_buffers.comp.h"
 
 namespace limpid::denoise {
 namespace {
@@ -39,7 +43,8 @@ struct Picture {
     const NanoNetwork& network;
     float strength;
     gpu::Extent extent;
-    ImageHandle weights, stableToo;
+    ImageHandle weights, matrixWeights;  ///< matrices read them from a buffer
+    ImageHandle stableToo;
     SvgfLight results;
     std::map<std::string, ImageHandle> buffers;  ///< all tiles are of one size, and use the same
 };
@@ -84,6 +89,15 @@ class TileRecorder {
     }
 
   private:
+    const gpu::ShaderCode& choose(const gpu::ShaderCode& images, const gpu::ShaderCode& buffers) const {
+        return buffers_ ? buffers : images;
+    }
+    /// Where an invocation computes so many pixels of a row.
+    static Extent threads(Extent extent, int pixels) {
+        return {divideUp(extent.width, static_cast<uint32_t>(pixels)), extent.height};
+    }
+    Extent filterThreads(Extent extent) const { return threads(extent, buffers_ ? 1 : NANO_IMAGE_PIXELS); }
+
     std::string name(const std::string& what) const { return network_.name + "/" + what; }
     std::string name(const std::string& what, size_t level) const {
         return name(what + " " + std::to_string(level));
@@ -112,7 +126,7 @@ class TileRecorder {
                                         .paddedHeight = extents_[0].height};
         graph_.dispatch(
             {.pass = name("features") + suffix_,
-             .shader = buffers_ ? shaders::nano_features_buffers_comp : shaders::nano_features_comp,
+             .shader = choose(shaders::nano_features_comp, shaders::nano_features_buffers_comp),
              .bindings = {{"surfaces", svgf_.surfaces},
                           {"colorA", a.accumulated},
                           {"colorB", b.accumulated},
@@ -133,7 +147,7 @@ class TileRecorder {
              .constants = {{"TWO_SIGNALS", twoSignals() ? 1u : 0u},
                            {"HAS_PAST", svgf_.stabilised ? 1u : 0u},
                            {"OUTPUT_GROUPS", network_.levels[0].halve.outputs}},
-             .extent = extents_[0]});
+             .extent = filterThreads(extents_[0])});
         return channels;
     }
 
@@ -163,19 +177,18 @@ class TileRecorder {
         if (!coarser) coarser = inputs;
         if (input_.matrices) {
             convolveByMatrices(graph_, {pass, shareOf(level, taps), taps, params, inputs, coarser,
-                                        picture_.weights, outputs});
+                                        picture_.matrixWeights, outputs});
             return outputs;
         }
-        graph_.dispatch(
-            {.pass = pass,
-             .shader = shaders::nano_convolve_comp,
-             .bindings = {{"inputs", inputs},
-                          {"coarser", coarser},
-                          {"weights", picture_.weights},
-                          {"outputs", outputs}},
-             .params = gpu::paramsOf(params),
-             .constants = {{"TAPS", taps}},
-             .extent = {(extent.width + NANO_PIXELS - 1) / NANO_PIXELS, extent.height * layer.outputs}});
+        graph_.dispatch({.pass = pass,
+                         .shader = choose(shaders::nano_convolve_comp, shaders::nano_convolve_buffers_comp),
+                         .bindings = {{"inputs", inputs},
+                                      {"coarser", coarser},
+                                      {"weights", picture_.weights},
+                                      {"outputs", outputs}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {{"TAPS", taps}},
+                         .extent = threads({extent.width, extent.height * layer.outputs}, NANO_PIXELS)});
         return outputs;
     }
 
@@ -200,7 +213,7 @@ class TileRecorder {
         light_[level + 1] = texels(name("light", level + 1), level + 1, 1);
         const NanoFilterParams params = filterParams(level);
         graph_.dispatch({.pass = name("pool", level + 1) + suffix_,
-                         .shader = shaders::nano_pool_comp,
+                         .shader = choose(shaders::nano_pool_comp, shaders::nano_pool_buffers_comp),
                          .bindings = {{"inputs", channels},
                                       {"weights", picture_.weights},
                                       {"light", light_[level]},
@@ -214,7 +227,7 @@ class TileRecorder {
         const ImageHandle result = texels(name("filtered", level), level, 1);
         const NanoFilterParams params = filterParams(level);
         graph_.dispatch({.pass = name("filter", level) + suffix_,
-                         .shader = shaders::nano_filter_comp,
+                         .shader = choose(shaders::nano_filter_comp, shaders::nano_filter_buffers_comp),
                          .bindings = {{"inputs", channels},
                                       {"weights", picture_.weights},
                                       {"light", light_[level]},
@@ -222,7 +235,7 @@ class TileRecorder {
                                       {"result", result}},
                          .params = gpu::paramsOf(params),
                          .constants = {{"COARSER", coarser ? 1u : 0u}},
-                         .extent = extents_[level]});
+                         .extent = filterThreads(extents_[level])});
         return result;
     }
 
@@ -230,7 +243,7 @@ class TileRecorder {
         const SvgfSignalStages &a = svgf_.signals.front(), &b = svgf_.signals.back();
         const NanoFilterParams params = filterParams(0);
         graph_.dispatch({.pass = name("filter", 0) + suffix_,
-                         .shader = buffers_ ? shaders::nano_finest_buffers_comp : shaders::nano_finest_comp,
+                         .shader = choose(shaders::nano_finest_comp, shaders::nano_finest_buffers_comp),
                          .bindings = {{"inputs", channels},
                                       {"weights", picture_.weights},
                                       {"light", light_[0]},
@@ -245,7 +258,7 @@ class TileRecorder {
                          .constants = {{"COARSER", 1u},
                                        {"STABILISE", replacesStable() ? 1u : 0u},
                                        {"TWO_SIGNALS", twoSignals() ? 1u : 0u}},
-                         .extent = tile_.inner});
+                         .extent = filterThreads(tile_.inner)});
     }
 
     Picture& picture_;
@@ -266,10 +279,15 @@ Picture pictureOf(gpu::FrameGraph& graph, const DenoiserInput& input, const Svgf
     const auto image = [&](const std::string& called) {
         return graph.transient(network.name + "/" + called, Format::RGBA16Float, extent, input.filters);
     };
-    const ImageHandle weights =
-        graph.transient(network.name + "/weights", Format::RGBA32Uint,
-                        {static_cast<uint32_t>(network.weights.size() / 16), 1}, Backing::Buffer);
-    graph.upload(weights, network.weights);
+    const auto weightsIn = [&](const std::string& called, Backing backing) {
+        const auto rows = static_cast<uint32_t>(network.weights.size() / 16 / NANO_WEIGHTS_WIDTH);
+        const ImageHandle weights = graph.transient(network.name + "/" + called, Format::RGBA32Uint,
+                                                    {NANO_WEIGHTS_WIDTH, rows}, backing);
+        graph.upload(weights, network.weights);
+        return weights;
+    };
+    const ImageHandle weights = weightsIn("weights", input.filters);
+    const bool others = input.matrices && input.filters == Backing::Image;
     const ImageHandle stableToo =
         svgf.signals.size() > 1
             ? svgf.signals.back().stable
@@ -281,6 +299,7 @@ Picture pictureOf(gpu::FrameGraph& graph, const DenoiserInput& input, const Svgf
             .strength = strength,
             .extent = extent,
             .weights = weights,
+            .matrixWeights = others ? weightsIn("weights of matrices", Backing::Buffer) : weights,
             .stableToo = stableToo,
             .results = {image("diffuse"), image("specular")},
             .buffers = {}};

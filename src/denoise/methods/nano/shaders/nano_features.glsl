@@ -6,6 +6,12 @@
 #include "denoise/stages/surfaces/surface_texel.glsl"
 #include "shaders/common/sampling.glsl"
 
+#ifdef LIMPID_FILTER_BUFFERS
+const int PIXELS = 1;  // in a row, that an invocation computes
+#else
+const int PIXELS = NANO_IMAGE_PIXELS;
+#endif
+
 layout(constant_id = 0) const bool TWO_SIGNALS = true;   // else the second is black
 layout(constant_id = 1) const bool HAS_PAST = true;      // else the filtered light stands for that of the past
 layout(constant_id = 2) const uint OUTPUT_GROUPS = 2u;   // of the first layer
@@ -26,7 +32,7 @@ layout(set = 0, binding = 10, rgba16f) uniform readonly image2D momentsA;
 layout(set = 0, binding = 11, rgba16f) uniform readonly image2D momentsB;
 READ_LAYER(12, albedoA);
 READ_LAYER(13, albedoB);
-READ_TEXELS(14, weights);  // of the first layer
+READ_WEIGHTS(14, weights);  // of the first layer
 WRITE_TEXELS(15, channels);
 WRITE_TEXELS(16, light);
 
@@ -76,14 +82,17 @@ vec3 inView(vec3 normal) {
                 -dot(normal, params.camera.forward));
 }
 
-float features[NANO_FEATURES];
+struct Features {
+    float values[NANO_FEATURES];
+};
 
 /// Limited to what real albedos are.
 vec3 albedoOf(vec4 texel) {
     return clamp(finiteOr(texel.rgb, vec3(1.0)), 0.0, 1.0);
 }
 
-void gather(ivec2 at, Signal a, Signal b) {
+Features gather(ivec2 at, Signal a, Signal b) {
+    Features features;
     const uvec2 surface = LOAD_UINT2(surfaces, at);
     const bool sees = distanceOf(surface) > 0.0;
     const float distance = logDistance(at);
@@ -99,18 +108,18 @@ void gather(ivec2 at, Signal a, Signal b) {
                                   0.5 * min(vec2(a.deviation, b.deviation) / tone, 4.0),
                                   1.0 / max(vec2(a.frames, b.frames), 1.0));
     [[unroll]] for (int i = 0; i < 7; ++i) {
-        features[2 * i] = pairs[i].x;
-        features[2 * i + 1] = pairs[i].y;
+        features.values[2 * i] = pairs[i].x;
+        features.values[2 * i + 1] = pairs[i].y;
     }
     const vec4 rest[3] = vec4[3](vec4(albedo, min(luminance(mirror), 1.0)),
                                  vec4(normal, 0.25 * distance),
                                  vec4(4.0 * bend(at, distance), roughness, 0.0, 0.0));
-    [[unroll]] for (int i = 0; i < 10; ++i) features[14 + i] = rest[i / 4][i % 4];
+    [[unroll]] for (int i = 0; i < 10; ++i) features.values[14 + i] = rest[i / 4][i % 4];
+    return features;
 }
 
-void main() {
-    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (pixel.x >= int(params.paddedWidth) || pixel.y >= int(params.paddedHeight)) return;
+/// Stores the pixel's light, too.
+Features featuresOf(ivec2 pixel, uint index) {
     const ivec2 at = inside(pixel + ivec2(params.tileX, params.tileY));
     const vec4 filtered = LOAD_HALF4(filteredA, at);
     vec3 before = filtered.rgb;
@@ -124,16 +133,28 @@ void main() {
         if (HAS_PAST) before = unpackedStable(LOAD_UINT1(pastB, at));
         b = signalOf(LOAD_HALF4(colorB, at), LOAD_HALF4(firstB, at), filteredToo, before, imageLoad(momentsB, at).w);
     }
-    gather(at, a, b);
-    const uint index = uint(pixel.y) * params.paddedWidth + uint(pixel.x);
     const bool sees = distanceOf(LOAD_UINT2(surfaces, at)) > 0.0;
     light.texels[index] = packLightPair(LightPair(a.color, b.color, sees));
+    return gather(at, a, b);
+}
+
+void main() {
+    const ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(PIXELS, 1);
+    if (first.x >= int(params.paddedWidth) || first.y >= int(params.paddedHeight)) return;
+    const uint index = uint(first.y) * params.paddedWidth + uint(first.x);  // padded to whole invocations
+    Features features[PIXELS];
+    [[unroll]] for (int p = 0; p < PIXELS; ++p) features[p] = featuresOf(first + ivec2(p, 0), index + uint(p));
     [[unroll]] for (uint group = 0u; group < OUTPUT_GROUPS; ++group) {
-        Eight sum = unpackEight(weights.texels[group]);
+        const Eight bias = unpackEight(LOAD_WEIGHTS(weights, group));
+        Eight sums[PIXELS];
+        [[unroll]] for (int p = 0; p < PIXELS; ++p) sums[p] = bias;
         [[unroll]] for (uint i = 0u; i < NANO_FEATURES; ++i) {
             const uint at = OUTPUT_GROUPS + ((i / 8u) * OUTPUT_GROUPS + group) * 8u + i % 8u;
-            addProduct(sum, features[i], unpackEight(weights.texels[at]));
+            const Eight w = unpackEight(LOAD_WEIGHTS(weights, at));
+            [[unroll]] for (int p = 0; p < PIXELS; ++p) addProduct(sums[p], features[p].values[i], w);
         }
-        channels.texels[index * OUTPUT_GROUPS + group] = packEight(Eight(leaky(sum.low), leaky(sum.high)));
+        [[unroll]] for (int p = 0; p < PIXELS; ++p)
+            channels.texels[(index + uint(p)) * OUTPUT_GROUPS + group] =
+                packEight(Eight(leaky(sums[p].low), leaky(sums[p].high)));
     }
 }

@@ -8,6 +8,11 @@ const int REACH = NANO_FINEST_REACH, GROUPS = NANO_FINEST_LOGIT_GROUPS;
 #else
 const int REACH = NANO_REACH, GROUPS = NANO_LOGIT_GROUPS;
 #endif
+#ifdef LIMPID_FILTER_BUFFERS
+const int PIXELS = 1;
+#else
+const int PIXELS = NANO_IMAGE_PIXELS;
+#endif
 const int EDGE = 2 * REACH + 1, OWN_TAPS = EDGE * EDGE, ALL_TAPS = OWN_TAPS + NANO_COARSER_TAPS;
 layout(constant_id = 0) const bool COARSER = true;  // there is a coarser level
 #ifdef LIMPID_NANO_FINEST
@@ -19,7 +24,7 @@ layout(set = 0, binding = 0, scalar) uniform Params {
     NanoFilterParams params;
 };
 READ_TEXELS(1, inputs);
-READ_TEXELS(2, weights);
+READ_WEIGHTS(2, weights);
 READ_TEXELS(3, light);
 READ_TEXELS(4, coarser);
 #ifdef LIMPID_NANO_FINEST
@@ -35,15 +40,21 @@ WRITE_TEXELS(5, result);
 
 #include "denoise/methods/nano/shaders/nano_logits.glsl"
 
-/// Of one signal.
+/// Of one signal and pixel.
 struct Logits {
     Eight values[GROUPS];
 };
 
-Logits logitsOfSignal(uint pixel, uint signal) {
-    Logits logits;
-    [[unroll]] for (int group = 0; group < GROUPS; ++group)
-        logits.values[group] = logitsOf(pixel, signal * params.logitGroups + uint(group));
+struct AllLogits {
+    Logits pixels[PIXELS];
+};
+
+AllLogits logitsOfSignal(uint pixels[PIXELS], uint signal) {
+    AllLogits logits;
+    [[unroll]] for (int group = 0; group < GROUPS; ++group) {
+        const LogitsOfPixels eight = logitsOf(pixels, signal * params.logitGroups + uint(group));
+        [[unroll]] for (int p = 0; p < PIXELS; ++p) logits.pixels[p].values[group] = eight.values[p];
+    }
     return logits;
 }
 
@@ -92,26 +103,46 @@ vec4 mixed(vec4 svgf, vec3 own, Logits logits) {
 }
 #endif
 
-void main() {
-    const ivec2 written = ivec2(gl_GlobalInvocationID.xy);
-    if (written.x >= int(params.width) || written.y >= int(params.height)) return;
+/// Where a pixel that is written lies in the tile, and in the picture.
 #ifdef LIMPID_NANO_FINEST
-    const ivec2 inPicture = written + ivec2(params.innerX, params.innerY);
-    const ivec2 at = inPicture - ivec2(params.tileX, params.tileY);
+ivec2 inPicture(ivec2 written) {
+    return written + ivec2(params.innerX, params.innerY);
+}
+ivec2 inTile(ivec2 written) {
+    return inPicture(written) - ivec2(params.tileX, params.tileY);
+}
 #else
-    const ivec2 at = written;
+ivec2 inTile(ivec2 written) {
+    return written;
+}
 #endif
-    const uint pixel = uint(at.y) * params.paddedWidth + uint(at.x);
-    const Logits a = logitsOfSignal(pixel, 0u), b = logitsOfSignal(pixel, 1u);
+
+void filterPixel(ivec2 written, Logits a, Logits b) {
+    const ivec2 at = inTile(written);
     const LightPair own = filtered(at, a, b);
 #ifdef LIMPID_NANO_FINEST
-    const vec4 diffuse = mixed(LOAD_HALF4(filteredA, inPicture), own.diffuse, a);
-    const vec4 specular = mixed(LOAD_HALF4(filteredB, inPicture), own.specular, b);
-    STORE_HALF4(resultA, inPicture, diffuse);
-    STORE_HALF4(resultB, inPicture, specular);
-    if (STABILISE) STORE_UINT1(stableA, inPicture, packedStable(diffuse.rgb));
-    if (STABILISE && TWO_SIGNALS) STORE_UINT1(stableB, inPicture, packedStable(specular.rgb));
+    const ivec2 to = inPicture(written);
+    const vec4 diffuse = mixed(LOAD_HALF4(filteredA, to), own.diffuse, a);
+    const vec4 specular = mixed(LOAD_HALF4(filteredB, to), own.specular, b);
+    STORE_HALF4(resultA, to, diffuse);
+    STORE_HALF4(resultB, to, specular);
+    if (STABILISE) STORE_UINT1(stableA, to, packedStable(diffuse.rgb));
+    if (STABILISE && TWO_SIGNALS) STORE_UINT1(stableB, to, packedStable(specular.rgb));
 #else
-    result.texels[pixel] = packLightPair(own);
+    result.texels[uint(at.y) * params.paddedWidth + uint(at.x)] = packLightPair(own);
 #endif
+}
+
+void main() {
+    const ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(PIXELS, 1);
+    if (first.x >= int(params.width) || first.y >= int(params.height)) return;
+    uint pixels[PIXELS];
+    [[unroll]] for (int p = 0; p < PIXELS; ++p) {
+        const ivec2 at = inTile(ivec2(min(first.x + p, int(params.width) - 1), first.y));
+        pixels[p] = uint(at.y) * params.paddedWidth + uint(at.x);
+    }
+    const AllLogits a = logitsOfSignal(pixels, 0u), b = logitsOfSignal(pixels, 1u);
+    [[unroll]] for (int p = 0; p < PIXELS; ++p) {
+        if (first.x + p < int(params.width)) filterPixel(first + ivec2(p, 0), a.pixels[p], b.pixels[p]);
+    }
 }

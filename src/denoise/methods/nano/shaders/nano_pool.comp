@@ -11,23 +11,26 @@ layout(set = 0, binding = 0, scalar) uniform Params {
     NanoFilterParams params;
 };
 READ_TEXELS(1, inputs);
-READ_TEXELS(2, weights);
+READ_WEIGHTS(2, weights);
 READ_TEXELS(3, light);
 WRITE_TEXELS(4, pooled);
 
+const int PIXELS = 4;
 #include "denoise/methods/nano/shaders/nano_logits.glsl"
 
 void main() {
     const uvec2 at = gl_GlobalInvocationID.xy;
     const uint width = params.paddedWidth / 2u;
     if (at.x >= width || at.y >= params.paddedHeight / 2u) return;
+    uint pixels[PIXELS];
+    [[unroll]] for (uint i = 0u; i < 4u; ++i)
+        pixels[i] = (2u * at.y + i / 2u) * params.paddedWidth + 2u * at.x + i % 2u;
+    const uint group = LOGIT / 8u;
+    const LogitsOfPixels a = logitsOf(pixels, group), b = logitsOf(pixels, params.logitGroups + group);
     LightSums sums = LightSums(vec4(0.0), vec4(0.0));
-    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
-        const uint pixel = (2u * at.y + i / 2u) * params.paddedWidth + 2u * at.x + i % 2u;
-        const uint group = LOGIT / 8u;
-        const vec2 logits = vec2(logitOf(logitsOf(pixel, group), int(LOGIT)),
-                                 logitOf(logitsOf(pixel, params.logitGroups + group), int(LOGIT)));
-        add(sums, lightPairOf(light.texels[pixel]), exp(clamp(logits, -10.0, 10.0)));
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const vec2 logits = vec2(logitOf(a.values[i], int(LOGIT)), logitOf(b.values[i], int(LOGIT)));
+        add(sums, lightPairOf(light.texels[pixels[i]]), exp(clamp(logits, -10.0, 10.0)));
     }
     pooled.texels[at.y * width + at.x] = packLightPair(meanOf(sums));
 }

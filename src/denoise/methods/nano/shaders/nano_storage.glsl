@@ -1,4 +1,5 @@
-// What the buffers of `nano` hold: channels as halves, eight in a texel, those of a pixel side by side.
+// What the buffers of `nano` hold: channels as halves, eight in a texel, those of a pixel side by side. Where filters
+// read images, so are the weights: on CPUs, loads from an image take half of the time.
 #ifndef LIMPID_NANO_STORAGE_GLSL
 #define LIMPID_NANO_STORAGE_GLSL
 #extension GL_EXT_control_flow_attributes : require
@@ -10,6 +11,14 @@
     layout(set = 0, binding = slot, scalar) readonly buffer name##Texels { uvec4 texels[]; } name
 #define WRITE_TEXELS(slot, name) \
     layout(set = 0, binding = slot, scalar) writeonly buffer name##Texels { uvec4 texels[]; } name
+
+#ifdef LIMPID_FILTER_BUFFERS
+#define READ_WEIGHTS(slot, name) READ_TEXELS(slot, name)
+#define LOAD_WEIGHTS(name, index) name.texels[index]
+#else
+#define READ_WEIGHTS(slot, name) layout(set = 0, binding = slot, rgba32ui) uniform readonly uimage2D name
+#define LOAD_WEIGHTS(name, index) imageLoad(name, ivec2((index) % NANO_WEIGHTS_WIDTH, (index) / NANO_WEIGHTS_WIDTH))
+#endif
 
 struct Eight {
     vec4 low, high;
