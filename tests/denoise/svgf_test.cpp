@@ -180,9 +180,9 @@ HostFrame SvgfPassTest::frameOf(int number) {
     const SvgfCase& c = std::get<0>(GetParam());
     const bool small = c.resizeAt >= 0 && number >= c.resizeAt;
     HostFrame frame = SyntheticScene(c.options).frame(number, small ? 61 : c.columns, small ? 43 : c.rows, 7);
-    const float factor = c.brightness * (c.jumpAt >= 0 && number >= c.jumpAt ? 3.0f : 1.0f);
+    const float brightness = c.brightness * (c.jumpAt >= 0 && number >= c.jumpAt ? 3.0f : 1.0f);
     for (auto* layer : {&frame.diffuse, &frame.specular}) {
-        for (float& value : *layer) value *= factor;
+        for (float& value : *layer) value *= brightness;
     }
     if (c.hasNegatives) {
         for (size_t i = 0; i < frame.pixelCount() * 4; ++i) {
