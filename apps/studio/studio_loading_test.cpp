@@ -58,6 +58,24 @@ TEST_F(StudioTest, ScenesLoadBesideTheRendering) {
     studio->finish();
 }
 
+TEST_F(StudioTest, AMissingFileIsToldBeforeTheFrameEnds) {
+    if (wantedDevice() != "cpu") GTEST_SKIP() << "NOT TESTED: only frames on CPUs are interrupted.";
+    StudioSettings settings = small();
+    settings.samples = 400;
+    settings.resolution = Resolution::Full;
+    const auto studio = make(settings);
+    rest(*studio);
+    wait(*studio, studio->edit({{"seed", 3}}), [](const Shown& s) { return s.facts.computing; });
+    const auto failed = wait(*studio, studio->ask({.kind = Kind::Open, .file = "none.gltf"}),
+                             [](const Shown& s) { return !s.facts.fault.empty(); });
+    EXPECT_THAT(failed->facts.fault, HasSubstr("none.gltf"));
+    EXPECT_TRUE(failed->facts.computing);
+    const auto second = rest(*studio);
+    EXPECT_EQ(second->facts.framesEver, failed->facts.framesEver + 1);
+    EXPECT_EQ(second->facts.fault, failed->facts.fault);
+    studio->finish();
+}
+
 /// A hand that drags a colour asks for many scenes. None but the last is needed.
 TEST_F(StudioTest, OneSceneIsLoadedAtATime) {
     std::atomic<int> running = 0, most = 0, loads = 0;

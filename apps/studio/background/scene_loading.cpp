@@ -10,11 +10,6 @@ namespace {
 
 constexpr double loaded = 0.6;  ///< share of the time until a scene's file is read; trees take the rest
 
-/// No thread works on it.
-bool isReady(const std::future<LoadedScene>& scene) {
-    return !scene.valid() || scene.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-}
-
 }  // namespace
 
 LoadedScene loadScene(const SceneLoader& load, const SceneLoading::Order& order, const Progress& progress) {
@@ -22,6 +17,11 @@ LoadedScene loadScene(const SceneLoader& load, const SceneLoading::Order& order,
     if (order.clip && !result.scene.rig.clips.empty()) scene::chooseClip(result.scene, *order.clip);
     result.data = scene::buildSceneData(result.scene, progress.part(loaded, 1.0));
     return result;
+}
+
+/// No thread works on it.
+bool SceneLoading::isReady(const Future& scene) {
+    return !scene.valid() || scene.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
 void SceneLoading::begin(Order order) {
@@ -35,8 +35,8 @@ void SceneLoading::begin(Order order) {
 void SceneLoading::start() {
     givenUp_ = {};
     scene_ = std::async(std::launch::async, [this, order = *order_, progress = progress_] {
-        return loadScene(load_, order, progress);
-    });
+                 return std::make_shared<LoadedScene>(loadScene(load_, order, progress));
+             }).share();
 }
 
 void SceneLoading::cancel() {
@@ -51,10 +51,19 @@ bool SceneLoading::isDone() {
     return scene_.valid() && isReady(scene_);
 }
 
+bool SceneLoading::hasFailed() {
+    if (!isDone()) return false;
+    try {
+        return !scene_.get();
+    } catch (...) {  // take() throws it
+        return true;
+    }
+}
+
 LoadedScene SceneLoading::take() {
     if (!scene_.valid()) start();
     order_.reset();
-    return scene_.get();
+    return std::move(*std::exchange(scene_, {}).get());
 }
 
 }  // namespace limpid::studio

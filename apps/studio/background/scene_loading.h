@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,6 +52,8 @@ class SceneLoading {
     bool isFirst() const { return order_ && order_->why == Why::First; }
     /// To be asked again and again: begins what had to wait.
     bool isDone();
+    /// Whether it is done, and take() would throw.
+    bool hasFailed();
     int percent() const { return static_cast<int>(100.0 * progress_.done()); }
     /// Waits for the scene and returns it. Throws what the loader threw, and Error. Nothing is being loaded
     /// afterwards.
@@ -62,8 +65,12 @@ class SceneLoading {
     const SceneLoader& load_;
     std::optional<Order> order_;
     Progress progress_;
-    std::future<LoadedScene> scene_;    ///< of the order; none while that waits
-    std::future<LoadedScene> givenUp_;  ///< its thread may still run; none while there is a scene_
+    /// Shared, because hasFailed() looks into it.
+    using Future = std::shared_future<std::shared_ptr<LoadedScene>>;
+    static bool isReady(const Future& scene);
+
+    Future scene_;    ///< of the order; none while that waits
+    Future givenUp_;  ///< its thread may still run; none while there is a scene_
 };
 
 /// Loads a scene, starts its clip and builds its trees and tables. Throws what the loader throws, Error and

@@ -78,6 +78,16 @@ std::deque<Message> Mailbox::take(double seconds) {
     return std::exchange(messages_, {});
 }
 
+std::deque<Message> Mailbox::takeFirst(bool (*wanted)(const Message&)) {
+    const std::lock_guard lock(mutex_);
+    std::deque<Message> first;
+    while (!messages_.empty() && wanted(messages_.front())) {
+        first.push_back(std::move(messages_.front()));
+        messages_.pop_front();
+    }
+    return first;
+}
+
 bool Mailbox::hasUrgentMail() const {
     const std::lock_guard lock(mutex_);
     return std::ranges::any_of(messages_, isUrgent);

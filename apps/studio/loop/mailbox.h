@@ -35,6 +35,8 @@ class Mailbox {
     uint64_t post(std::variant<nlohmann::json, Gesture, Request> content);
     /// All messages since the last call. Waits until there is one, close() is called, or the time is over.
     std::deque<Message> take(double seconds);
+    /// The first messages since then, as long as they are wanted, without waiting.
+    std::deque<Message> takeFirst(bool (*wanted)(const Message&));
     /// Whether there is a message that makes the frame that is being rendered useless.
     bool hasUrgentMail() const;
     void close();

@@ -58,6 +58,21 @@ TEST(Mailbox, UrgentIsWhatChangesTheFrame) {
     EXPECT_FALSE(urgent(Request{Request::Kind::SavePng}));
 }
 
+TEST(Mailbox, GivesTheFirstThatAreWanted) {
+    const auto opens = [](const Message& message) {
+        const Request* const request = std::get_if<Request>(&message.content);
+        return request && request->kind == Request::Kind::Open;
+    };
+    Mailbox mailbox;
+    EXPECT_TRUE(mailbox.takeFirst(opens).empty());
+    for (int i = 0; i < 2; ++i) mailbox.post(Request{Request::Kind::Open});
+    mailbox.post(Gesture{.zoom = 1.0f});
+    mailbox.post(Request{Request::Kind::Open});
+    EXPECT_EQ(mailbox.takeFirst(opens).size(), 2u);
+    EXPECT_TRUE(mailbox.takeFirst(opens).empty()) << "a gesture comes first";
+    EXPECT_EQ(mailbox.take(0.0).size(), 2u);
+}
+
 TEST(Mailbox, WakesItsReader) {
     Mailbox mailbox;
     std::thread writer([&] {

@@ -51,12 +51,8 @@ RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tr
     state_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
     state_.resolution = settings.resolution;
     facts_.device = device_.info().name;
-    const auto interrupted = [this] {
-        const bool ends = mailbox_.isClosed() && settings_.quitAfter == 0 && settings_.screenshot.empty();
-        return interruptible_ && !ending_ && (ends || mailbox_.hasUrgentMail() || networks_.isDone());
-    };
-    main_.setInterruption(interrupted);
-    comparison_.setInterruption(interrupted);
+    main_.setInterruption([this] { return isUseless(); });
+    comparison_.setInterruption([this] { return isUseless(); });
     device_.onNewPipelines([this] { tellCompiling(); });
 }
 
@@ -192,14 +188,50 @@ void RenderLoop::announce() {
     publish();
 }
 
-/// Tells the clients why this frame takes longer. Nothing else of what they have changes: the frame is under
-/// way.
+/// Tells the clients why this frame takes longer.
 void RenderLoop::tellCompiling() {
+    tellAmid([](Shown& shown) { shown.facts.compiling = true; });
+}
+
+/// Changes a part of what the clients have while a frame is under way.
+void RenderLoop::tellAmid(const std::function<void(Shown&)>& change) {
     publishWaiting();
     auto shown = std::make_shared<Shown>(*mailbox_.shown());
     shown->number = ++publications_;
-    shown->facts.compiling = true;
+    change(*shown);
     mailbox_.publish(std::move(shown));
+}
+
+/// Whether the frame that is under way should be given up. Called many times while a CPU computes it.
+bool RenderLoop::isUseless() {
+    if (ending_) return false;
+    tendLoading();
+    if (!interruptible_) return false;
+    const bool ends = mailbox_.isClosed() && settings_.quitAfter == 0 && settings_.screenshot.empty();
+    const bool replaced = loading_ && loading_.isDone();
+    return ends || replaced || mailbox_.hasUrgentMail() || networks_.isDone();
+}
+
+/// Begins or gives up the loading of scenes without waiting for the end of the frame, and tells the clients
+/// how far that is. Scenes that are there are shown after the frame.
+void RenderLoop::tendLoading() {
+    const bool before = std::exchange(changedFacts_, false);
+    for (const Message& message : mailbox_.takeFirst(concernsLoading)) {
+        handle(message);
+        messages_ = message.number;
+        changedFacts_ = true;
+    }
+    if (loading_ && loading_.hasFailed()) finishLoading();
+    noteActivity();
+    if (!std::exchange(changedFacts_, before)) return;
+    tellAmid([this](Shown& shown) {
+        shown.messages = messages_;
+        shown.facts.activity = facts_.activity;
+        shown.facts.percent = facts_.percent;
+        shown.facts.message = facts_.message;
+        shown.facts.messageIsOld = facts_.messageIsOld;
+        shown.facts.fault = facts_.fault;
+    });
 }
 
 /// Chooses what the next snapshot shows. The picture of a frame that the device still computes is not among

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -119,6 +120,9 @@ class RenderLoop {
     std::vector<std::string> filesInUse() const;
     void announce();
     void tellCompiling();
+    void tellAmid(const std::function<void(Shown&)>& change);
+    bool isUseless();
+    void tendLoading();
 
     void saveWhatIsAsked();
     void save(const std::filesystem::path& file);
