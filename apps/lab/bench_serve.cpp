@@ -192,13 +192,14 @@ void printStages(const StageTimes& times, const BenchViewer& viewer, double seco
                static_cast<double>(times.of("render").size()) / seconds);
 }
 
-void measure(const ServeBench& o, const std::string& url, StageTimes& stages) {
+void measure(const ServeBench& o, const std::string& url, Clock::time_point begin, StageTimes& stages) {
     const size_t colon = url.rfind(':'), equals = url.rfind('=');
     BenchViewer viewer(std::stoi(url.substr(colon + 1)), url.substr(equals + 1), o.codec);
     const auto start = Clock::now();
     while (!viewer.receive(1.0)) {
         if (secondsSince(start) > patience) throw Error("no picture comes");
     }
+    const double first = secondsSince(begin);
     latencies(viewer, 3);  // pipelines are made, the encoder is warm
     const std::vector<double> times = latencies(viewer, o.steps);
     stages.collect(true);
@@ -206,6 +207,7 @@ void measure(const ServeBench& o, const std::string& url, StageTimes& stages) {
     stages.collect(false);
     fmt::print("{} of {} x {} ({})\n", o.studio.scene.source.scene, viewer.extent().width,
                viewer.extent().height, o.codec);
+    fmt::print("first picture: {:.2f} s after the start\n", first);
     fmt::print("latency: {:.1f} ms median, {:.1f} ms of 95 %, {:.1f} ms at most ({} gestures)\n",
                median(times), times[(times.size() - 1) * 95 / 100], times.back(), times.size());
     fmt::print("rate: {:.1f} frames/s, {:.2f} Mbit/s ({} s)\n", pictures,
@@ -214,6 +216,7 @@ void measure(const ServeBench& o, const std::string& url, StageTimes& stages) {
 }
 
 void run(const ServeBench& o) {
+    const auto begin = Clock::now();
     studio::StudioSettings settings;
     apply(o.studio, settings);
     studio::Studio studio(o.studio.device.device, tracerChoice(o.studio), sceneLoader(),
@@ -237,7 +240,7 @@ void run(const ServeBench& o) {
     });
     std::exception_ptr fault;
     try {
-        measure(o, address.get_future().get(), stages);
+        measure(o, address.get_future().get(), begin, stages);
     } catch (...) {
         fault = std::current_exception();
     }
