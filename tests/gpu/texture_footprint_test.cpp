@@ -1,6 +1,8 @@
 // Tests that ray footprints do not change what a picture converges to: checkerboards seen directly and in
 // glossy reflections keep the contrast they have without mip levels, and the light of a textured emitter is
 // that of its texels.
+#include <cmath>
+#include <cstdint>
 #include <functional>
 
 #include "tests/gpu/render_fixture.h"
@@ -52,6 +54,15 @@ scene::Material stripes(scene::Scene& scene, MipFilter mip) {
     scene::Material material = unlitCheckerboard(scene, mip);
     material.baseColorTexture =
         addTexture(scene, 32, 32, mip, [](uint32_t x, uint32_t) -> uint8_t { return x < 16 ? 255 : 0; });
+    return material;
+}
+
+/// A wave along u. (The levels of the stripes are as sharp as they are.)
+scene::Material waves(scene::Scene& scene, MipFilter mip) {
+    scene::Material material = unlitCheckerboard(scene, mip);
+    material.baseColorTexture = addTexture(scene, 32, 32, mip, [](uint32_t x, uint32_t) {
+        return static_cast<uint8_t>(std::lround(128.0 + 120.0 * std::sin(glm::two_pi<double>() * x / 32.0)));
+    });
     return material;
 }
 
@@ -131,6 +142,14 @@ scene::Scene grazedStripes(MipFilter mip) {
     return scene;
 }
 
+/// Waves of five pixels, seen straight on.
+scene::Scene facedWaves(MipFilter mip) {
+    scene::Scene scene;
+    addStrip(scene, -1.0f, {-1.1f, 0}, {1.1f, 0}, vec2(5.0f * pixel), waves(scene, mip));
+    scene.cameras = {cameraAt({0, 0, 20}, {0, 1, 0})};
+    return scene;
+}
+
 double meanOf(const std::vector<double>& values) {
     double sum = 0.0;
     for (const double v : values) sum += v;
@@ -180,6 +199,17 @@ TEST_F(TextureFootprintTest, CheckerboardSeenDirectlyKeepsItsContrast) {
         EXPECT_NEAR(kept, 1.0, 0.02) << tilts[i] << " degrees";
         EXPECT_NEAR(meanOf(with[i]), meanOf(without[i]), 0.005) << tilts[i] << " degrees";
     }
+}
+
+/// A picture of one sample is as sharp as the mean over the pixels.
+TEST_F(TextureFootprintTest, TheFirstSampleIsBlurredLikeAPixel) {
+    RenderSettings centres = jittered(1);
+    centres.jitter = Jitter::Frame;
+    const Columns with = columnsOf(facedWaves(MipFilter::Linear), 1, centres, 1);
+    const Columns without = columnsOf(facedWaves(MipFilter::None), 1, jittered(4), 256);
+    const double kept = contrastOf(with[0], without[0]);
+    fmt::print("waves seen straight on, one sample: {:.4f} of the contrast\n", kept);
+    EXPECT_NEAR(kept, 1.0, 0.02);
 }
 
 /// The footprint is the only filter of a pixel's first sample. With jitter, which will average later, it is

@@ -129,8 +129,9 @@ struct RayCone {
     /// reads it at points. Both must use the same light for their weighted sum to be correct, so emission is
     /// read at a point here too. Other textures need less precision, since the lobe blurs them.
     bool scattered;
-    bool wide;  // as wide across as along the ray; for rays through pixel centres, which would otherwise
-                // shimmer
+    /// As wide across as along the ray, and wider than a pixel; for rays through pixel centres, which would
+    /// otherwise shimmer.
+    bool wide;
 };
 
 /// The axes of a ray's footprint on a triangle: full widths, in barycentrics.
@@ -145,9 +146,12 @@ vec2 barycentricsOf(vec3 v, vec3 edge1, vec3 edge2, vec3 unitNormal, float doubl
     return vec2(dot(cross(v, edge2), unitNormal), dot(cross(edge1, v), unitNormal)) / doubleArea;
 }
 
+/// How much wider than a pixel `wide` cones are.
+const float WIDE = 1.7320508;
+
 /// Intersects a cone of this width with the triangle's plane: an ellipse, longer by 1 / cosine along the ray
 /// (T. Akenine-Moeller et al., "Improved shader and texture level of detail using ray cones", JCGT 2021), or
-/// a circle around it if the cone is `wide`.
+/// a larger circle around it if the cone is `wide`.
 Footprint footprintOn(vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea, vec3 toViewer, RayCone cone) {
     const float cosine = dot(unitNormal, toViewer);
     const vec3 inPlane = toViewer - cosine * unitNormal;
@@ -155,8 +159,9 @@ Footprint footprintOn(vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea,
     const bool tilted = dot(inPlane, inPlane) > 1e-8;
     const vec3 axis = tilted ? along : edge1 * inversesqrt(max(dot(edge1, edge1), 1e-37));
     const vec3 other = cross(unitNormal, axis);
-    const float length_ = cone.width / max(abs(cosine), 0.05);
-    return Footprint(barycentricsOf((cone.wide ? length_ : cone.width) * other, edge1, edge2, unitNormal, doubleArea),
+    const float width = cone.wide && !cone.scattered ? WIDE * cone.width : cone.width;
+    const float length_ = width / max(abs(cosine), 0.05);
+    return Footprint(barycentricsOf((cone.wide ? length_ : width) * other, edge1, edge2, unitNormal, doubleArea),
                      barycentricsOf(length_ * axis, edge1, edge2, unitNormal, doubleArea),
                      !cone.scattered);
 }

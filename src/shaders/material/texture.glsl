@@ -95,8 +95,13 @@ vec4 sampleTexture(TextureRef ref, vec2 uv, float lod) {
 /// The maximum number of taps along a footprint's long axis. Longer footprints use coarser levels.
 const uint MAX_TAPS = 4u;
 
+/// The width, in texels, of the box that blurs as much as a level's own filter. A texel is a mean over a box, and
+/// bilinear interpolation makes a tent of it: variances of 1/12 and 1/6 texels, as much as that of a box sqrt(3) wide.
+const float LEVEL_FILTER = 1.7320508;
+
 /// Returns the mean over a parallelogram around `uv` with these axes (full widths, in units of uv). The short
-/// extent selects the level, and taps lie along the long one (A. Schilling et al., "Texram", IEEE CG&A 1996).
+/// extent selects the level, and taps lie along the long one (A. Schilling et al., "Texram", IEEE CG&A 1996). Together
+/// they have the variance of the parallelogram along both axes, whatever the number of taps.
 /// Without mip levels: one tap, according to the sampler. `exact` false: one tap in one level, for the same
 /// area.
 vec4 sampleFootprint(TextureRef ref, vec2 uv, vec2 across, vec2 along, bool exact) {
@@ -112,7 +117,7 @@ vec4 sampleFootprint(TextureRef ref, vec2 uv, vec2 across, vec2 along, bool exac
     const uint taps = oneTap ? 1u : max(uint(wanted), 1u);
     const vec2 step_ = (firstLonger ? across : along) / float(taps);
     const vec2 first = uv - 0.5 * float(taps - 1u) * step_;
-    const float lod = exact ? log2(shortExtent) : floor(0.5 * log2(max(area, 1e-20)) + 0.5);
+    const float lod = exact ? log2(shortExtent / LEVEL_FILTER) : floor(0.5 * log2(max(area, 1e-20)) + 0.5);
     return sampleTaps(ref, first, step_, taps, lod);
 }
 
