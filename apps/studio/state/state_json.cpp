@@ -251,7 +251,6 @@ Entry integratorEntry() {
             pipeline.integrator = integrators()[chosen];
             if (pipeline.denoiser && !canBeDenoised(pipeline.integrator, *pipeline.denoiser))
                 pipeline.denoiser = nullptr;
-            if (!s.isPreview()) s.pipelineBefore = s.render.pipeline;
             s.render.pipeline = pipeline;
         });
     entry.field.choiceHelp = std::move(help);
@@ -276,7 +275,6 @@ Entry denoiserEntry() {
             pipeline.denoiser = parseDenoiser(names[chosen]);
             if (pipeline.denoiser)
                 pipeline.integrator = integratorFor(*pipeline.denoiser, pipeline.integrator);
-            if (!s.isPreview()) s.pipelineBefore = s.render.pipeline;
             s.render.pipeline = pipeline;
         });
     entry.field.choiceHelp = std::move(help);
@@ -494,6 +492,8 @@ void apply(State& state, const json& changes) {
             refuse(key, "the value has the wrong type");
         }
     }
+    // Integrator and denoiser may change together: what counts is the pipeline before all changes.
+    if (changed.isPreview() && !state.isPreview()) changed.pipelineBefore = state.render.pipeline;
     state = std::move(changed);
 }
 

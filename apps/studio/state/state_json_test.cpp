@@ -170,6 +170,15 @@ TEST(StateJson, PreviewRemembersThePipelineBefore) {
     EXPECT_TRUE(state.isPreview());
     state.setPreview(false);
     EXPECT_EQ(state.render.pipeline.integrator, Integrator::AmbientOcclusion);
+
+    // The window sends all fields that the preview changes.
+    state.render.pipeline = parsePipeline("path", "svgf");
+    State shown = state;
+    shown.setPreview(true);
+    studio::apply(state, changesOf(toJson(state), toJson(shown)));
+    EXPECT_TRUE(state.isPreview());
+    state.setPreview(false);
+    EXPECT_EQ(state.render.pipeline, parsePipeline("path", "svgf"));
 }
 
 }  // namespace
