@@ -202,8 +202,8 @@ TEST_F(ViewEventsTest, TheCommandLineMakesTheSameFrame) {
             command = viewer.fact("message").substr(7);
             EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
         }
-        const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
-                                         command + " --device cpu --float");
+        const Result result =
+            runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " + command + " --float");
         ASSERT_EQ(result.code, 0) << command << "\n" << result.output;
         fs::path last = folder_ / "frame.exr";
         for (int i = 0; fs::exists(folder_ / ("frame." + std::string(4 - std::to_string(i).size(), '0') +

@@ -242,7 +242,7 @@ TEST_F(ViewToolsTest, LightsComeAndGo) {
     EXPECT_THAT(viewer.fact("message"), HasSubstr(" --light point,"));
     EXPECT_THAT(viewer.fact("message"), HasSubstr(" --lights lights.json"));
     const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
-                                     viewer.fact("message").substr(7) + " --device cpu --float");
+                                     viewer.fact("message").substr(7) + " --float");
     ASSERT_EQ(result.code, 0) << result.output;
     EXPECT_EQ(image::readPicture(path("frame.exr")).linear.pixels,
               image::readPicture(path("limpid.exr")).linear.pixels);
@@ -284,7 +284,7 @@ TEST_F(ViewToolsTest, CamerasNumbersAndThePreview) {
     EXPECT_THAT(viewer.fact("message"), HasSubstr("--eye 1.5,"));
     EXPECT_THAT(viewer.fact("message"), HasSubstr(" --up 0.7"));
     const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
-                                     viewer.fact("message").substr(7) + " --device cpu --float");
+                                     viewer.fact("message").substr(7) + " --float");
     ASSERT_EQ(result.code, 0) << result.output;
     EXPECT_EQ(image::readPicture(path("frame.exr")).linear.pixels,
               image::readPicture(path("limpid.exr")).linear.pixels);
@@ -324,7 +324,7 @@ TEST_F(ViewToolsTest, LayersGoIntoTheFile) {
     viewer.click("copy command line");
     viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
     const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
-                                     viewer.fact("message").substr(7) + " --device cpu --float");
+                                     viewer.fact("message").substr(7) + " --float");
     ASSERT_EQ(result.code, 0) << result.output;
     const image::LayeredImage again = image::readExr(path("frame.exr"));
     for (const char* channel : {"R", "diffuse.G", "normal.Z"})

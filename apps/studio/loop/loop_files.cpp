@@ -39,14 +39,14 @@ void RenderLoop::makeCommand() {
     if (!main_ || isNew_ || playback_.frames() == 0) throw Error("there is no frame yet");
     const scene::Scene& scene = stage_->scene();
     ShownFrame frame{.source = settings_.source,
+                     .device = askedDevice_,
                      .clip = stage_->moves() ? scene.rig.clips[static_cast<size_t>(scene.clip)].name : "",
                      .weights = settings_.weights.string(),
                      .settings = main_.settings(),
                      .samples = state_.samples,
                      .samplesInMean = main_.samples(),
                      .camera = rig_.option(settings_.startCamera),
-                     .fovDegrees = fovOfLast_,
-                     .toneCurve = curveOf(main_.settings().pipeline)};
+                     .fovDegrees = fovOfLast_};
     frame.source.lightFile = state_.lights.isChanged() ? lightFile : "";
     CommandLine command = commandLineOf(frame, playback_, pathFile);
     if (rig_.isFree() && rig_.hand().camera().orthographic)

@@ -33,6 +33,7 @@ RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tr
       load_(load),
       start_(start),
       mailbox_(mailbox),
+      askedDevice_(options.select),
       device_(options),
       reload_(settings.shaders),
       main_(device_, reload_.replacements()),

@@ -154,6 +154,7 @@ class RenderLoop {
     const SceneLoader& load_;
     const CameraStart& start_;
     Mailbox& mailbox_;
+    std::string askedDevice_;  ///< DeviceOptions::select
     gpu::Device device_;
     std::unique_ptr<Stage> stage_;  ///< null: no scene yet
     CameraRig rig_;

@@ -24,6 +24,10 @@ std::string sourceOptions(const scene::SceneSource& source) {
     return text;
 }
 
+std::string deviceOption(const ShownFrame& frame) {
+    return frame.device.empty() ? "" : " --device " + quoted(frame.device);
+}
+
 /// Returns the options for the frames' times, or sets the reason why they cannot be reproduced.
 std::string timesOf(const ShownFrame& frame, const Playback& playback, uint64_t frames, CommandLine& result) {
     const bool moves = !frame.clip.empty() || frame.camera.find("--camera-path") != std::string::npos;
@@ -65,13 +69,11 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
     const bool accumulates = s.pipeline.accumulates();
     const uint64_t frames = accumulates ? 1 : playback.frames();
     result.text = "limpid render " + quoted(frame.source.scene);
-    result.text += sourceOptions(frame.source);
+    result.text += sourceOptions(frame.source) + deviceOption(frame);
     result.text += fmt::format(" {} --width {} --height {} --seed {} --jitter {} --spp {}",
                                s.pipeline.options(), s.extent.width, s.extent.height, s.seed,
                                toString(s.jitter), accumulates ? frame.samplesInMean : frame.samples);
     if (accumulates) result.text += " --progressive";
-    if (frame.toneCurve != image::ToneCurve::Standard)
-        result.text += fmt::format(" --tone-curve {}", image::nameOf(frame.toneCurve));
     if (s.layers) result.text += " --aov all";
     if (s.pathtrace.samplerTea) result.text += " --sampler tea";
     if (frames > 1) result.text += fmt::format(" --frames {} --fps {}", frames, playback.framesPerSecond);
@@ -102,7 +104,8 @@ std::string stateCommandOf(const ShownFrame& frame, const std::string& command,
                            const std::string& stateFile) {
     scene::SceneSource source = frame.source;
     source.lightFile.clear();  // the state has the lights
-    std::string text = "limpid " + command + " " + studio::quoted(source.scene) + sourceOptions(source);
+    std::string text = "limpid " + command + " " + studio::quoted(source.scene) + sourceOptions(source) +
+                       deviceOption(frame);
     if (!frame.clip.empty()) text += " --animation " + quoted(frame.clip);
     if (!frame.weights.empty()) text += " --weights " + quoted(frame.weights);
     return text + " --state " + quoted(stateFile);

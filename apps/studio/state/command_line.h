@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "image/tone_curve.h"
 #include "renderer/method/settings.h"
 #include "scene/load/scene_source.h"
 #include "studio/live/playback.h"
@@ -13,6 +12,7 @@ namespace limpid::studio {
 /// What decides the frame in the window.
 struct ShownFrame {
     scene::SceneSource source;
+    std::string device;   ///< as it was asked for (gpu::DeviceOptions::select); empty: the best one
     std::string clip;     ///< name; empty: the scene moves by none
     std::string weights;  ///< of networks; empty: those that come along
     RenderSettings settings;
@@ -20,7 +20,6 @@ struct ShownFrame {
     uint64_t samplesInMean = 0;  ///< without a denoiser
     std::string camera;          ///< its options, as "--camera 2"; empty: as `playback` has it
     float fovDegrees = 45.0f;
-    image::ToneCurve toneCurve = image::ToneCurve::Standard;  ///< for a PNG
 };
 
 struct CommandLine {

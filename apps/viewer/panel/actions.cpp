@@ -60,6 +60,7 @@ void drawActions(const Drawing& with, const char* section) {
 
 void askToOpen(const Drawing& with, const std::string& file) {
     with.panel.asked.push_back({.kind = RequestKind::Open, .file = file});
+    with.panel.file = file;  // the text field shows what was opened last
 }
 
 }  // namespace limpid::viewer

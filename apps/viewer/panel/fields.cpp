@@ -114,7 +114,7 @@ std::string helpOf(const Field& field, const json& value) {
         if (value == field.choices[i]) text += "\n\n" + field.choices[i] + ": " + field.choiceHelp[i];
     const bool number = field.kind == Kind::Int || field.kind == Kind::Float;
     if (number)
-        text += fmt::format("\n{:g} to {:g}; Ctrl and a click: type it", field.minimum, field.maximum);
+        text += fmt::format("\n{:.7g} to {:.7g}; Ctrl and a click: type it", field.minimum, field.maximum);
     return text;
 }
 
