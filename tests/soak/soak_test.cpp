@@ -47,6 +47,18 @@ double residentMegabytes() {
     return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
+class Mean {
+  public:
+    void add(double value) {
+        sum_ += value;
+        ++count_;
+    }
+    double value() const { return count_ == 0 ? 0.0 : sum_ / count_; }
+
+  private:
+    double sum_ = 0.0, count_ = 0.0;
+};
+
 /// A client of the server, for a while.
 class Visitor {
   public:
@@ -161,7 +173,8 @@ TEST_F(Soak, MemoryStaysFlat) {
     const uint64_t frames = wantedFrames();
     uint64_t pictures = 0, reported = 0, scenesShown = 0;
     double hostThen = 0.0, hostNow = 0.0;
-    uint64_t deviceThen = 0, deviceNow = 0, disturbedAt = 0;
+    Mean deviceThen, deviceNow;
+    uint64_t disturbedAt = 0;
     for (uint64_t done = 0; done < frames && !studio_->hasEnded();) {
         // Not by time: the first frames wait for shaders to be compiled.
         if (done == 0 || done >= disturbedAt + 5) {
@@ -174,17 +187,19 @@ TEST_F(Soak, MemoryStaysFlat) {
         done = shown->facts.framesEver;
         scenesShown = std::max<uint64_t>(scenesShown, static_cast<uint64_t>(shown->facts.scenesShown));
         hostNow = std::max(hostNow, residentMegabytes());
-        deviceNow = std::max(deviceNow, shown->facts.memoryBytes);
+        deviceNow.add(static_cast<double>(shown->facts.memoryBytes) / 1e6);
         if (done * 10 / frames == reported) continue;
-        // The largest of the first half and of the second half are compared.
+        // The first half and the second half are compared: the largest memory of the host, and the mean of
+        // the device, whose largest depends on rare combinations of size and method.
         reported = done * 10 / frames;
         std::fprintf(
-            stderr, "%llu frames, %llu scenes, %llu pictures sent: host %.0f MB, device %.1f MB at most\n",
+            stderr,
+            "%llu frames, %llu scenes, %llu pictures sent: host %.0f MB at most, device %.2f MB on average\n",
             static_cast<unsigned long long>(done), static_cast<unsigned long long>(scenesShown),
-            static_cast<unsigned long long>(pictures), hostNow, static_cast<double>(deviceNow) / 1e6);
+            static_cast<unsigned long long>(pictures), hostNow, deviceNow.value());
         if (reported == 5) {
             hostThen = std::exchange(hostNow, 0.0);
-            deviceThen = std::exchange(deviceNow, 0);
+            deviceThen = std::exchange(deviceNow, {});
         }
     }
     visitors_.clear();
@@ -192,7 +207,7 @@ TEST_F(Soak, MemoryStaysFlat) {
     EXPECT_GT(pictures, frames / 100);
     EXPECT_GT(scenesShown, frames / 500);
     EXPECT_LT(hostNow, 1.1 * hostThen + 8.0);
-    EXPECT_LE(deviceNow, deviceThen + deviceThen / 10);
+    EXPECT_LT(deviceNow.value(), 1.1 * deviceThen.value());
     studio_->finish();
 }
 
