@@ -46,7 +46,7 @@ struct Stages {
 };
 
 /// A pass belongs to the stage whose name it begins with. Not every stage has passes on every device.
-constexpr std::array<std::pair<const char*, const char*>, 11> stageNames{{{"path tracing", "pathtrace"},
+constexpr std::array<std::pair<const char*, const char*>, 12> stageNames{{{"path tracing", "pathtrace"},
                                                                           {"surfaces", "surfaces"},
                                                                           {"reprojection", "svgf/reproject"},
                                                                           {"tiles", "svgf/tiles"},
@@ -56,6 +56,7 @@ constexpr std::array<std::pair<const char*, const char*>, 11> stageNames{{{"path
                                                                           {"a-trous levels", "svgf/level"},
                                                                           {"young pixels", "svgf/young"},
                                                                           {"composition", "svgf/compose"},
+                                                                          {"edges", "edges"},
                                                                           {"anti-aliasing", "taa"}}};
 
 Stages stagesOf(const std::map<std::string, PassCost>& costs) {

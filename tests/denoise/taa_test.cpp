@@ -209,6 +209,24 @@ TEST(Taa, OneFrameIsThePictureItself) {
     EXPECT_EQ(graph.passes().size(), before + 1);
 }
 
+/// Frames whose edges may be smooth already are not smoothed again.
+TEST(Taa, EdgesAreSmoothedInJitteredFrames) {
+    const HostFrame frame = SyntheticScene({}).frame(0, 16, 9, 1);
+    const auto passes = [&](bool jitters, const denoise::TaaSettings& settings) {
+        gpu::FrameGraph graph;
+        graph.beginFrame();
+        denoise::DenoiserInput input = denoise::upload(graph, frame);
+        input.jitterChanges = jitters;
+        const size_t before = graph.passes().size();
+        denoise::antialias(graph, input, input.emission, settings);
+        return graph.passes().size() - before;
+    };
+    EXPECT_EQ(passes(false, {.frames = 2.0f}), 1u);
+    EXPECT_EQ(passes(true, {}), 3u);
+    EXPECT_EQ(passes(true, {.edges = 0}), 1u);
+    EXPECT_EQ(passes(true, {.frames = 1.0f}), 0u);
+}
+
 /// With the default settings, frames that are jittered are averaged.
 TEST(Taa, JitteredFramesAreAveragedByDefault) {
     EXPECT_EQ(denoise::framesToAverage({}, false), 1.0f);

@@ -115,8 +115,9 @@ TEST_P(EveryPassTest, Runs) {
             }
         }
     }
-    for (const char* part : {"gbuffer", "ambient_occlusion", "accumulate/", "pathtrace", "deform", "tonemap",
-                             "temporal", "atrous", "svgf", "nano", "film", "kpcn", "taa", "compose"}) {
+    for (const char* part :
+         {"gbuffer", "ambient_occlusion", "accumulate/", "pathtrace", "deform", "tonemap", "temporal",
+          "atrous", "svgf", "nano", "film", "kpcn", "edges", "taa", "compose"}) {
         EXPECT_TRUE(std::ranges::any_of(
             run_, [&](const std::string& pass) { return pass.find(part) != std::string::npos; }))
             << part << " did not run";

@@ -2,6 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 // Temporal anti-aliasing. docs/denoising.md.
 #include "denoise/stages/reproject/reprojection.glsl"
+#include "denoise/stages/taa/encoding.glsl"
 #include "denoise/stages/taa/taa_params.h"
 #include "shaders/common/filter_image.glsl"
 
@@ -42,17 +43,6 @@ const float HARD_BEND = 0.3;
 const float INNER_SHARE = 0.15;
 /// Pixels a frame. A pixel that moves less averages more frames, since the past is hardly resampled there.
 const float MOVING = 0.1;
-
-/// Luma and two chromas of a compressed colour: bright pixels weigh less, as they will on a screen.
-vec3 encode(vec3 c) {
-    const vec3 shown = c / (1.0 + luminance(c));
-    return vec3(dot(shown, vec3(0.25, 0.5, 0.25)), dot(shown, vec3(0.5, 0.0, -0.5)), dot(shown, vec3(-0.25, 0.5, -0.25)));
-}
-
-vec3 decode(vec3 v) {
-    const vec3 shown = max(vec3(v.x + v.y - v.z, v.x + v.z, v.x - v.y - v.z), vec3(0.0));
-    return shown / max(1.0 - luminance(shown), 1e-6);
-}
 
 ivec2 inside(ivec2 at) {
     return clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
@@ -101,11 +91,6 @@ struct Neighbourhood {
 /// Weights of the three pixels around `t` in [-0.5, 0.5]: the parabola through them.
 vec3 parabolaWeights(float t) {
     return vec3(0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0));
-}
-
-/// Luminance of a compressed colour.
-float encodedLuminance(vec3 v) {
-    return luminance(vec3(v.x + v.y - v.z, v.x + v.z, v.x - v.y - v.z));
 }
 
 /// Returns the largest second difference across the middle of 3x3 values in reading order, relative to the largest of

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "denoise/stages/taa/edges.h"
 #include "denoise/stages/taa/taa_params.h"
 #include "taa.comp.h"
 #include "taa_buffers.comp.h"
@@ -23,6 +24,11 @@ const ParamTable<TaaSettings>& taaParams() {
               "Frames that are averaged where nothing moves, if the rays are jittered from frame to frame; "
               "more is smoother and calmer")
             .slider(1, 64, SliderScale::Logarithmic);
+        t.add("edges", &TaaSettings::edges, 0, 64, "pixels",
+              "Length of an edge, in each direction, that is seen to smooth the stairs of surfaces' borders "
+              "in each "
+              "frame, if the rays are jittered from frame to frame; more is smoother and slower, 0 is off")
+            .slider(0, 32);
         return t;
     }();
     return table;
@@ -44,6 +50,8 @@ ImageHandle antialias(gpu::FrameGraph& graph, const DenoiserInput& input, ImageH
     const float frames = framesToAverage(settings, input.jitterChanges);
     if (frames <= 1.0f) return beauty;
     const gpu::Extent extent = graph.extent(beauty);
+    if (input.jitterChanges && settings.edges > 0)
+        beauty = smoothEdges(graph, input, beauty, static_cast<uint32_t>(settings.edges));
     const gpu::History history = graph.history("taa", Format::RGBA16Float, extent, input.filters);
     const ImageHandle result = graph.transient("taa/beauty", Format::RGBA32Float, extent);
     const bool buffers = input.filters == gpu::Backing::Buffer;
