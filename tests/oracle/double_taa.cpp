@@ -22,6 +22,7 @@ constexpr double encodedRounding = 1e-6, clipRounding = 3e-7;
 /// Statistics of the encoded beauty over the 3x3 pixels around one.
 struct Around {
     dvec3 mean{0.0}, deviation{0.0};
+    double brightest = 0.0;  ///< l
 };
 
 std::array<double, 4> catmullRom(double t) {
@@ -39,11 +40,17 @@ double luminanceOf(const dvec3& encoded) {
     return luminance(dvec3(x + y - z, x + z, x - y - z));
 }
 
+/// Scaled down to the luminance `most`.
+dvec3 limited(const dvec3& encoded, double most) {
+    const double l = luminanceOf(encoded);
+    return l > most ? encoded * (most / l) : encoded;
+}
+
 /// Step 4. `error` is added to the allowed difference of the components.
 dvec3 clip(const dvec3& h, const Around& around, double error) {
     const dvec3 most = glm::max(deviations * around.deviation, dvec3(minDistance)) + error;
     const dvec3 e = glm::abs(h - around.mean) / most;
-    return around.mean + (h - around.mean) / std::max({e.x, e.y, e.z, 1.0});
+    return limited(around.mean + (h - around.mean) / std::max({e.x, e.y, e.z, 1.0}), around.brightest);
 }
 
 /// What step 5 takes from the 3x3 pixels.
@@ -117,7 +124,10 @@ std::array<size_t, 9> Antialiaser::block(size_t p) const {
 
 Around Antialiaser::around(size_t p) const {
     Around result;
-    for (const size_t q : block(p)) result.mean += encoded_[q] / 9.0;
+    for (const size_t q : block(p)) {
+        result.mean += encoded_[q] / 9.0;
+        result.brightest = std::max(result.brightest, luminanceOf(encoded_[q]));
+    }
     dvec3 variance(0.0);
     for (const size_t q : block(p)) {
         const dvec3 difference = encoded_[q] - result.mean;
@@ -140,9 +150,7 @@ dvec3 Antialiaser::atCentre(size_t p) const {
         most = glm::max(most, e);
         brightest = std::max(brightest, luminanceOf(e));
     }
-    const dvec3 c = glm::clamp(sum, least, most);
-    const double l = luminanceOf(c);
-    return l > brightest ? c * (brightest / l) : c;
+    return limited(glm::clamp(sum, least, most), brightest);
 }
 
 /// Step 5: the largest bend of four triples through the middle of `values`, in reading order.

@@ -183,6 +183,18 @@ TEST_F(TaaByHand, UndoingJitterDoesNotOvershoot) {
     for (const TaaPixel& pixel : pixels) EXPECT_LT(largest(pixel.mean), 3e4);
 }
 
+/// Beside bright light the past may lie beyond all light, where E^-1 is infinite: where the cubic overshoots.
+TEST_F(TaaByHand, ThePastIsNotBrighterThanTheLight) {
+    const std::vector<float> beauty = pictureOf([](size_t x, size_t) { return dvec3(x >= 5 ? 200.0 : 0.1); });
+    for (const double by : {0.25, 0.5, 0.75, 1.0}) {
+        past = {side, side, {}};
+        for (size_t p = 0; p < size_t{side} * side; ++p)
+            past.mean.emplace_back(dvec3(p % side >= 5 ? 200.0 : 0.1), 3);
+        moveAll({by, 0});
+        for (const TaaPixel& pixel : advance(beauty)) EXPECT_LT(largest(pixel.mean), 200.1) << by;
+    }
+}
+
 /// Edges take all frames, surfaces few of them; so do all pixels whose jitter is unknown.
 TEST_F(TaaByHand, JitteredSurfacesAverageFewFrames) {
     // The beauty's pixels are alternately encoded as nearly 1 and 0, so nothing is clipped.

@@ -18,4 +18,9 @@ float encodedLuminance(vec3 v) {
     return luminance(vec3(v.x + v.y - v.z, v.x + v.z, v.x - v.y - v.z));
 }
 
+/// Scales a compressed colour down to a luminance.
+vec3 notBrighter(vec3 v, float most) {
+    return v * min(1.0, most / max(encodedLuminance(v), 1e-20));
+}
+
 #endif

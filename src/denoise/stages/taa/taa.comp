@@ -82,6 +82,7 @@ vec4 texelAt(ivec2 at) {
 
 struct Neighbourhood {
     vec3 mean, deviation;
+    float brightest;  // luminance
     vec3 centre;    // the colour at the pixel's centre
     bool isEdge;
     float hardness;  // of the edges of light: 0 to 1
@@ -132,9 +133,9 @@ Neighbourhood around(ivec2 at, vec3 now) {
     const vec3 mean = sum / 9.0;
     // Without these limits the parabola would overshoot beside edges, and bright light would explode in decode().
     centre = now + clamp(centre, least, most);
-    centre *= min(1.0, brightest / max(encodedLuminance(centre), 1e-20));
+    centre = notBrighter(centre, brightest);
     const vec3 variance = max(squares / 9.0 - mean * mean, vec3(0.0));
-    return Neighbourhood(now + mean, sqrt(variance), centre, bend(distances) > EDGE_BEND,
+    return Neighbourhood(now + mean, sqrt(variance), brightest, centre, bend(distances) > EDGE_BEND,
                          clamp((bend(lumas) - SOFT_BEND) / (HARD_BEND - SOFT_BEND), 0.0, 1.0), nearest);
 }
 
@@ -166,11 +167,12 @@ vec4 pastAt(vec2 position) {
     return vec4(sum, LOAD_HALF4(before, inside(ivec2(floor(position + 0.5)))).w);
 }
 
-/// Moves the past towards the neighbourhood's mean until it is within the allowed deviations.
+/// Moves the past towards the neighbourhood's mean until it is within the allowed deviations. Beside bright light these
+/// reach beyond all light, to which decode() is infinite, and the cubic overshoots.
 vec3 clipped(vec3 past, Neighbourhood near) {
     const vec3 off = past - near.mean;
     const vec3 excess = abs(off) / max(MAX_DEVIATIONS * near.deviation, vec3(1e-6));
-    return near.mean + off / max(max(excess.x, max(excess.y, excess.z)), 1.0);
+    return notBrighter(near.mean + off / max(max(excess.x, max(excess.y, excess.z)), 1.0), near.brightest);
 }
 
 void main() {
