@@ -121,6 +121,36 @@ TEST_F(HostFramesTest, SvgfAndNetworksAreTheSameInsideAndOutside) {
     }
 }
 
+/// Of jittered frames, edges are smoothed before they are averaged.
+TEST_F(HostFramesTest, JitteredFramesAreTheSameInsideAndOutside) {
+    const SyntheticScene scene({.objectMoves = true});
+    DenoiserSettings settings;
+    settings.taa.frames = 2.0f;
+    std::vector<float> depths, ids, result, withEdges, inside;
+    for (const int edges : {8, 0}) {
+        SCOPED_TRACE(edges);
+        create(LIMPID_METHOD_SVGF);
+        ASSERT_EQ(limpid_denoiser_set(denoiser_, "taa.frames", 2.0), LIMPID_OK) << limpid_last_error();
+        ASSERT_EQ(limpid_denoiser_set(denoiser_, "taa.edges", edges), LIMPID_OK) << limpid_last_error();
+        settings.taa.edges = edges;
+        graph_.resetHistories();
+        for (int number = 0; number < 4; ++number) {
+            HostFrame frame = embeddable(scene, number);
+            frame.jitter = vec2(0.25f, number % 2 == 0 ? 0.125f : -0.25f);
+            limpid_host_frame given = hostFrame(frame, depths, ids, result);
+            given.camera.jitter[0] = frame.jitter->x;
+            given.camera.jitter[1] = frame.jitter->y;
+            ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+            filters_ = gpu::filterChoice(device()).backing;
+            inside = denoise(*denoise::findDenoiser("svgf"), frame, settings);
+        }
+        EXPECT_LT(rmsDifference(result, inside), 2e-3);
+        if (edges > 0) withEdges = result;
+        limpid_denoiser_destroy(std::exchange(denoiser_, nullptr));
+    }
+    EXPECT_GT(rmsDifference(result, withEdges), 1e-3) << "the edges make no difference";
+}
+
 /// Light of 4 samples a pixel and the variances of its means, as the interface takes them.
 struct SampledFrame {
     static constexpr uint32_t samples = 4;

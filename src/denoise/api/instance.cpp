@@ -185,6 +185,8 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
                                   .filters = choice.backing});
     input.choose(choice);
     input.jitter = params.motion.jitter;
+    // A jitter of 0 may also mean that edges are smooth already.
+    input.jitterChanges = antialiases && input.jitter != vec2(0.0f);
     if (!antialiases && !used.temporal.showDisocclusion) input.target = target;
     input.wantsSignals = signalsToo;
     const DenoiserOutput made = method.record(graph, input, used);
