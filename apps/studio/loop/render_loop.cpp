@@ -52,8 +52,13 @@ RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tr
     state_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
     state_.resolution = settings.resolution;
     facts_.device = device_.info().name;
-    main_.setInterruption([this] { return isUseless(); });
-    comparison_.setInterruption([this] { return isUseless(); });
+    // Called many times while a CPU computes a frame.
+    const auto interrupted = [this] {
+        if (!ending_) tendLoading();
+        return isUseless();
+    };
+    main_.setInterruption(interrupted);
+    comparison_.setInterruption(interrupted);
     device_.onNewPipelines([this] { tellCompiling(); });
 }
 
@@ -203,11 +208,9 @@ void RenderLoop::tellAmid(const std::function<void(Shown&)>& change) {
     mailbox_.publish(std::move(shown));
 }
 
-/// Whether the frame that is under way should be given up. Called many times while a CPU computes it.
+/// Whether the frame that is under way should be given up.
 bool RenderLoop::isUseless() {
-    if (ending_) return false;
-    tendLoading();
-    if (!interruptible_) return false;
+    if (ending_ || !interruptible_) return false;
     const bool ends = mailbox_.isClosed() && settings_.quitAfter == 0 && settings_.screenshot.empty();
     const bool replaced = loading_ && loading_.isDone();
     return ends || replaced || mailbox_.hasUrgentMail() || networks_.isDone();
