@@ -8,9 +8,9 @@
 
 namespace limpid::denoise {
 
-/// Passes "edges/find" and "edges/smooth". `beauty` is not negative; so is the result, of the same size:
-/// rgba16f on GPUs (filters in buffers), where it is at most 65504, else rgba32f. `reach`: pixels along an
-/// edge in each direction, at least 1.
+/// Passes "edges/find" and "edges/smooth". Neither `beauty` nor the result, of the same size, is negative.
+/// The result is rgba16f on GPUs (filters in buffers), where `beauty` is at most 65504, else rgba32f.
+/// `reach`: pixels along an edge in each direction, at least 1.
 gpu::ImageHandle smoothEdges(gpu::FrameGraph& graph, const DenoiserInput& input, gpu::ImageHandle beauty,
                              uint32_t reach);
 

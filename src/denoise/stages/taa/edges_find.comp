@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 // Finds where a surface ends or bends sharply between two pixels. docs/denoising.md, "Edges".
-#include "denoise/stages/taa/edges_params.h"
 #include "denoise/stages/guides.glsl"
+#include "denoise/stages/taa/edges_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
