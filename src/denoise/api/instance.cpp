@@ -186,7 +186,8 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
     input.choose(choice);
     input.jitter = params.motion.jitter;
     // A jitter of 0 may also mean that edges are smooth already.
-    input.jitterChanges = antialiases && input.jitter != vec2(0.0f);
+    const bool jittered = input.jitter.x != 0.0f || input.jitter.y != 0.0f;
+    input.jitterChanges = antialiases && jittered;
     if (!antialiases && !used.temporal.showDisocclusion) input.target = target;
     input.wantsSignals = signalsToo;
     const DenoiserOutput made = method.record(graph, input, used);
