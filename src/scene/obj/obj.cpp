@@ -88,6 +88,7 @@ class ObjLoader {
     int grey_ = none;
     Group group_;
     size_t repaired_ = 0;
+    size_t notDrawn_ = 0;  ///< points, lines, curves and surfaces
 };
 
 Scene ObjLoader::run() {
@@ -101,6 +102,9 @@ Scene ObjLoader::run() {
     if (scene_.materials.empty()) scene_.materials.push_back(greyMaterial());
     scene_.files = files_.used();
     if (repaired_ > 0) log::warn("{}: {} normals repaired", files_.sceneFile().string(), repaired_);
+    if (notDrawn_ > 0)
+        log::warn("{}: {} statements of points, lines, curves and surfaces are not drawn",
+                  files_.sceneFile().string(), notDrawn_);
     return std::move(scene_);
 }
 
@@ -124,6 +128,8 @@ void ObjLoader::readLine(std::string_view line) {
         useLibraries(words.rest());
     } else if (key == "o" || key == "g") {
         startGroup(words.rest());
+    } else if (key == "p" || key == "l" || key == "curv" || key == "curv2" || key == "surf") {
+        ++notDrawn_;
     }
 }
 
