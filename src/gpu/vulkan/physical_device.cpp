@@ -26,6 +26,8 @@ const Feature features[] = {
      [](FeatureChain& f) -> VkBool32& { return f.v12.scalarBlockLayout; }},
     {"shaderStorageImageExtendedFormats", Need::Required,
      [](FeatureChain& f) -> VkBool32& { return f.core.features.shaderStorageImageExtendedFormats; }},
+    {"shaderUniformBufferArrayDynamicIndexing", Need::Enabled,
+     [](FeatureChain& f) -> VkBool32& { return f.core.features.shaderUniformBufferArrayDynamicIndexing; }},
     {"shaderInt16", Need::Enabled, [](FeatureChain& f) -> VkBool32& { return f.core.features.shaderInt16; }},
     {"shaderInt64", Need::Enabled, [](FeatureChain& f) -> VkBool32& { return f.core.features.shaderInt64; }},
     {"shaderFloat16", Need::Enabled, [](FeatureChain& f) -> VkBool32& { return f.v12.shaderFloat16; }},

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/text/format.h"
 #include "gpu/vulkan/check.h"
+#include "gpu/vulkan/execute/dynamic_params.h"
 
 namespace limpid::gpu {
 namespace {
@@ -86,6 +87,14 @@ void forEachOnThreads(size_t count, const std::function<void(size_t)>& work) {
     if (fault) std::rethrow_exception(fault);
 }
 
+/// Callers of an adopted device may not have enabled the feature.
+bool wantsDynamicParams(const Context& context) {
+    const DeviceInfo& info = context.info();
+    const std::pair<std::string, bool> feature("shaderUniformBufferArrayDynamicIndexing", true);
+    return info.type == DeviceType::Cpu && context.submits() &&
+           std::ranges::find(info.features, feature) != info.features.end();
+}
+
 /// Drivers only check the header of their cache data, so check the rest ourselves.
 uint64_t checksum(std::span<const std::byte> data) {
     uint64_t hash = 0xCBF29CE484222325u;  // FNV-1a
@@ -130,7 +139,10 @@ VkShaderStageFlagBits stageFlag(ShaderStage stage) {
 }
 
 PipelineCache::PipelineCache(std::shared_ptr<const Context> context, Specialise specialise)
-    : context_(std::move(context)), specialise_(std::move(specialise)), driverCache_(makeDriverCache({})) {}
+    : context_(std::move(context)),
+      specialise_(std::move(specialise)),
+      dynamicParams_(wantsDynamicParams(*context_)),
+      driverCache_(makeDriverCache({})) {}
 
 UniqueDriverCache PipelineCache::makeDriverCache(std::span<const std::byte> data) const {
     VkPipelineCacheCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
@@ -321,12 +333,14 @@ PipelineCache::Made PipelineCache::makePipeline(const RecordedDispatch& dispatch
         stage.pName = "main";
         stage.pSpecializationInfo = entries.empty() ? nullptr : &specialisation;
         // Not measured on GPUs, whose drivers store what they compiled.
-        if (!specialise_ || entries.empty() || context_->info().type != DeviceType::Cpu) continue;
-        const std::vector<uint32_t> words = specialise_(shader.stages[i].words, dispatch.constants);
+        if (context_->info().type != DeviceType::Cpu) continue;
+        std::vector<uint32_t> words;
+        if (specialise_ && !entries.empty()) words = specialise_(shader.stages[i].words, dispatch.constants);
+        if (!words.empty()) stage.pSpecializationInfo = nullptr;
+        if (dynamicParams_) words = withDynamicParams(words.empty() ? shader.stages[i].words : words);
         if (words.empty()) continue;
         specialised.push_back(makeModule(shader, words));
         stage.module = specialised.back().get();
-        stage.pSpecializationInfo = nullptr;
     }
     Made made;
     if (shader.tracesRays()) {

@@ -74,6 +74,7 @@ class PipelineCache {
 
     std::shared_ptr<const Context> context_;
     Specialise specialise_;
+    bool dynamicParams_;  ///< of dynamic_params.h
     UniqueDriverCache driverCache_;
     std::function<void()> listener_;
     mutable std::mutex mutex_;             ///< protects the members below; their elements do not move
