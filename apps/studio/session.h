@@ -42,7 +42,7 @@ struct Request {
         ResetCamera,
         SeeAll,       ///< moves the camera to where everything is seen
         Focus,        ///< turns the camera to what is seen at `position`
-        Probe,        ///< fills Facts::allValues with what the passes have at `position`, or empties it
+        Probe,        ///< fills Facts::allValues with what the passes have at `position`; again: empties it
         Open,         ///< a scene or an environment: `file`
         OpenDropped,  ///< the same, but it may not read files outside of its folder
         CancelLoading,

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/progress.h"
 #include "renderer/method/network_file.h"
 #include "studio/state/state_json.h"
@@ -77,6 +78,22 @@ TEST_F(StudioTest, AMissingFileIsToldBeforeTheFrameEnds) {
 }
 
 /// A hand that drags a colour asks for many scenes. None but the last is needed.
+TEST_F(StudioTest, TellsWhatWasAddedToAScene) {
+    const auto studio = make(small(), [](const scene::SceneSource& source, const Progress& progress) {
+        if (source.scene == "builtin:lab-mirror") log::warn("a soft sky was added");
+        return scene::openScene(source, progress);
+    });
+    EXPECT_TRUE(rest(*studio)->facts.notes.empty());
+    const int shown = studio->shown()->facts.scenesShown;
+    const auto noted = wait(*studio, studio->ask({.kind = Request::Kind::Open, .file = "builtin:lab-mirror"}),
+                            [&](const Shown& s) { return s.facts.scenesShown > shown; });
+    EXPECT_THAT(noted->facts.notes, testing::ElementsAre("a soft sky was added"));
+    const auto next = wait(*studio, studio->ask({.kind = Request::Kind::Open, .file = "builtin:cornell"}),
+                           [&](const Shown& s) { return s.facts.scenesShown > shown + 1; });
+    EXPECT_TRUE(next->facts.notes.empty());
+    studio->finish();
+}
+
 TEST_F(StudioTest, OneSceneIsLoadedAtATime) {
     std::atomic<int> running = 0, most = 0, loads = 0;
     const auto studio = make(small(), [&](const scene::SceneSource& source, const Progress& progress) {

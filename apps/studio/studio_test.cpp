@@ -287,7 +287,12 @@ TEST_F(StudioTest, ProbesTellWhyTheHistoryWasKept) {
         wait(*studio, studio->ask(probe), [](const Shown& s) { return !s.facts.allValues.empty(); });
     EXPECT_THAT(told->facts.allValues, HasSubstr("pixel (32, 24)\nhistory kept: "));
     EXPECT_THAT(told->facts.allValues, HasSubstr("temporal/color: "));
-    EXPECT_TRUE(rest(*studio, studio->ask(probe))->facts.allValues.empty());
+    const Request other{.kind = Kind::Probe, .position = {0.1f, 0.5f}};
+    const auto elsewhere = wait(*studio, studio->ask(other), [](const Shown& s) {
+        return s.facts.allValues.starts_with("pixel (6, 24)");
+    });
+    EXPECT_EQ(elsewhere->facts.probedAt, other.position);
+    EXPECT_TRUE(rest(*studio, studio->ask(other))->facts.allValues.empty());
     // Stopped, no frame is rendered for it.
     const auto paused = rest(*studio, studio->edit({{"running", false}, {"denoiser", "none"}}));
     const auto values =

@@ -39,7 +39,8 @@ gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
 /// The size of a window whose picture has the extent that was asked for.
 gpu::Extent withPanel(const ViewSettings& settings, const Memory& memory) {
     gpu::Extent size = settings.studio.render.extent;
-    size.width += static_cast<uint32_t>(memory.panelWidth > 0.0f ? memory.panelWidth : usualPanelWidth);
+    const float usual = panelWidthBeside(static_cast<float>(size.width));
+    size.width += static_cast<uint32_t>(memory.panelWidth > 0.0f ? memory.panelWidth : usual);
     return size;
 }
 
@@ -97,6 +98,7 @@ void ViewerWindow::run(studio::Studio& studio) {
         const bool hasEvents = window_.poll(restless > 0 ? std::max(due, 0.0) : idleSeconds);
         if (hasEvents || !window_.input().empty()) touched = Clock::now();
         if (touched >= last || hasNews(studio)) restless = restlessPictures;
+        if (shown_->facts.computing && secondsSince(last) >= idleSeconds) restless = std::max(restless, 1);
         if (secondsSince(touched) < handSeconds) period = shortestFrame;
         if (restless == 0 || secondsSince(last) < period) continue;
         const double seconds = std::min(secondsSince(std::exchange(last, Clock::now())), longestStep);

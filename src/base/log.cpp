@@ -37,6 +37,11 @@ MessageCallback& receiverOfAll() {
     return receiver;
 }
 
+Collector*& collectorOfThread() {
+    thread_local Collector* innermost = nullptr;
+    return innermost;
+}
+
 }  // namespace
 
 void setLevel(Level level) {
@@ -47,7 +52,20 @@ void setReceiver(MessageCallback receiver) {
     receiverOfAll() = std::move(receiver);
 }
 
+Collector::Collector() : outer_(std::exchange(collectorOfThread(), this)) {}
+
+Collector::~Collector() {
+    collectorOfThread() = outer_;
+}
+
+void Collector::add(const std::string& message) {
+    messages_.push_back(message);
+    if (outer_) outer_->add(message);
+}
+
 void write(Level level, const std::string& message) {
+    if (Collector* const collector = collectorOfThread(); collector && level >= Level::Info)
+        collector->add(message);
     if (receiverOfAll()) return receiverOfAll()(level, message);
     print(level, message);
 }

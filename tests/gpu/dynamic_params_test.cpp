@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "gpu/reflect/reflect.h"
 #include "shader_list.h"
 

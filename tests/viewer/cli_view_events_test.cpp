@@ -93,7 +93,8 @@ TEST_F(ViewEventsTest, PassesShowTheirImages) {
     viewer.waitFor("images", [&] { return viewer.controls().contains("image"); });
     viewer.choose("channels", "green");
     change(viewer, "brightness");
-    change(viewer, "false colour");
+    change(viewer, "false color");
+    viewer.waitFor("the legend", [&] { return viewer.controls().contains("colormap"); });
     viewer.xdotool("mousemove 430 850");
     viewer.waitFor("the probe", [&] { return viewer.fact("probe").starts_with("(53, 106)"); });
     viewer.waitFor("the history", [&] { return viewer.fact("reasons").starts_with("history kept: "); });
@@ -130,6 +131,10 @@ TEST_F(ViewEventsTest, ThePassUnderThePointerIsShown) {
     viewer.xdotool("mousemove 430 850");
     shows(first);
     viewer.click("pass " + first);  // the pointer stays, and the picture is shown
+    shows("");
+    viewer.click("pass " + second);
+    shows(second);
+    viewer.click("pass none");
     shows("");
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }

@@ -78,6 +78,15 @@ TEST_F(ViewLayoutTest, FindsMarksAndUndoes) {
     waitForValue(viewer, "search.method.seed", "7");
     search(viewer, "limpid.png");  // the help of a button
     viewer.waitFor("a button", [&] { return viewer.controls().contains("search.output.screenshot"); });
+    search(viewer, "firefly passes cornell-moving");
+    viewer.waitFor("nothing", [&] { return !viewer.controls().contains("search.output.screenshot"); });
+    search(viewer, "firefly");
+    viewer.waitFor("the plural", [&] { return viewer.controls().contains("search.svgf.fireflies"); });
+    search(viewer, "passes");
+    viewer.waitFor("the passes", [&] { return viewer.controls().contains("search.passes.pass pathtrace"); });
+    search(viewer, "swinging light");  // of a scene's help
+    viewer.waitFor("a scene",
+                   [&] { return viewer.controls().contains("search.scene.builtin:cornell-moving"); });
     viewer.xdotool("sleep 0.1 key ctrl+a sleep 0.1 key BackSpace");
     viewer.waitFor("the sections", [&] { return viewer.controls().contains("seed"); });
     EXPECT_NE(viewer.settledPicture(), start);
@@ -100,6 +109,11 @@ TEST_F(ViewLayoutTest, FindsMarksAndUndoes) {
     waitForValue(viewer, "seed", "7");
     viewer.xdotool("key ctrl+z");
     waitForValue(viewer, "seed", "0");
+
+    viewer.click("keep these settings");
+    waitForValue(viewer, "compare with", "kept settings");
+    viewer.xdotool("mousemove 200 900 key ctrl+z");
+    waitForValue(viewer, "compare with", "nothing");
 
     // A drag over several pictures of the window is one step.
     const std::string before = viewer.value("field of view");

@@ -1,6 +1,7 @@
 // Buttons for what is done once, which stand at the start of their sections.
 
-import {byId, make, setText} from './dom.js';
+import {byId, make, same, setText} from './dom.js';
+import {makeLegends} from './legends.js';
 import {makePresets} from './presets.js';
 import {makeUpload} from './upload.js';
 import {say} from './status.js';
@@ -92,6 +93,19 @@ function openScene(connection) {
   return {element, setScenes};
 }
 
+/// What a request changes of these fields becomes a step of undo. Returns what hears of the request's message.
+function rememberRequest(store, keys, name) {
+  let waiting = null;
+  const valuesNow = () => Object.fromEntries(keys.map(key => [key, store.value(key)]));
+  store.addEventListener('state', () => {
+    if (!waiting || !store.includes(waiting.id)) return;
+    const {before} = waiting, after = valuesNow();
+    waiting = null;
+    if (!same(before, after)) store.remember(before, after, name);
+  });
+  return id => { waiting = {id, before: valuesNow()}; };
+}
+
 /// Elements by section: some stand at its start, some at its end. `moved` hears of requests that move the camera.
 export function makeActions(store, connection, ask, status, moved) {
   const button = (request, text, title, sent = () => {}) => {
@@ -104,10 +118,13 @@ export function makeActions(store, connection, ask, status, moved) {
   const upload = makeUpload(connection);
   const command = new CommandLine(store, ask);
   const presets = makePresets(store);
+  const legends = makeLegends(store);
+  const kept = rememberRequest(store, ['compare', 'kept_settings'], 'keep these settings');
   const noMotion = make('p', {className: 'note', id: 'no-motion', role: 'status',
                               textContent: 'This method has no motion: choose a denoiser.', hidden: true});
   const elements = {
     scene: make('div', {}, make('p', {className: 'note', id: 'device'}), scenes.element, upload.element,
+                make('p', {className: 'note', id: 'scene-notes', hidden: true}),
                 row(make('button', {type: 'button', id: 'download', textContent: 'download PNG',
                                     title: 'The rendered picture, lossless',
                                     click: () => downloadPng(connection)}),
@@ -115,17 +132,19 @@ export function makeActions(store, connection, ask, status, moved) {
                     button('step', 'step', 'Renders one frame, also while rendering is stopped'),
                     command.button), command.box),
     camera: row(button('reset_camera', 'reset camera', 'Back to the camera of the start', moved),
-                button('see_all', 'see everything', 'To where the whole scene is seen', moved)),
+                button('see_all', 'see everything', 'To where the automatic camera would be', moved)),
     light: row(button('add_point', 'add a point', 'A lamp at the camera'),
                button('add_sun', 'add a sun', 'A sun above the scene')),
     look: row(button('measure_exposure', 'measure exposure', 'Sets the exposure for what is seen now')),
     compare: make('div', {}, row(button('keep_settings', 'keep these settings',
-                                        'Compares what you change from now on with the settings as they are')),
+                                        'Compares what you change from now on with the settings as they are',
+                                        kept)),
                   make('p', {className: 'note', id: 'scores'})),
     method: presets.element,
   };
-  const endings = {inspect: make('div', {}, noMotion, status.table)};
-  const hello = ({requests, scenes: names, uploads, presets: list}) => {
+  const endings = {look: legends.stops, inspect: make('div', {}, legends.values, noMotion, status.table)};
+  const hello = ({requests, scenes: names, uploads, presets: list, legends: colors}) => {
+    legends.setColors(colors ?? {});
     scenes.setScenes(names ?? []);
     upload.setLargest(uploads ?? 0);
     presets.setPresets(list ?? []);

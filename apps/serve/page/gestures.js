@@ -75,7 +75,8 @@ export class Gestures {
     pointer.y = event.clientY;
     const count = this.#pointers.size;
     if (count > 1) return this.pinch(before, this.spread(), dx / count, dy / count);
-    if (this.touchesPixels() || event.ctrlKey) return this.picture.drag(dx, dy);
+    // Pixels that are not enlarged cannot be moved: the camera is.
+    if ((this.touchesPixels() && this.picture.zoom > 1) || event.ctrlKey) return this.picture.drag(dx, dy);
     if (pointer.button === 0) this.add('orbit', [radiansPerPixel * dx, -radiansPerPixel * dy]);
     if (pointer.button === 2) this.add('look', [radiansPerPixel * dx, -radiansPerPixel * dy]);
     if (pointer.button === 1) this.pan(dx, dy);

@@ -102,7 +102,10 @@ const handlers = {
     }
     showDivider();
   },
-  facts: message => store.receiveFacts(message.facts),
+  facts: message => {
+    store.receiveFacts(message.facts);
+    picture.setProbe(store.facts.values ? store.facts.probed_at : null);
+  },
   ack: message => store.acknowledge(message.id, message.message),
   values: message => inspection.showValues(message),
   refused: message => say(`Refused: ${message.why}`),

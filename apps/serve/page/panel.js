@@ -11,11 +11,19 @@ const onlyWithPass = ['image', 'view.channels', 'view.stops', 'view.false_color'
 // The page sets the first; the others belong to EXR files, which it does not have, and to buttons.
 const hidden = ['viewport', 'layers', 'kept_settings', 'running'];
 
+/// A word without the ending of its plural: "firefly" and "fireflies" are "firefl".
+const stemOf = word => word.replace(/(?<=...)(ies|y|s)$/, '');
+
+/// What is written in an element, and in its hints.
+const textOfAll = element => [element.textContent, ...[...element.querySelectorAll('[title]')].map(e => e.title)]
+    .join(' ').toLowerCase();
+
 const idOf = key => 'field-' + key.replace(/[^a-z0-9]/gi, '-');
 
 export class Panel {
   #rows = new Map();     // key -> {element, show, reset}
   #sections = new Map(); // name -> <details>
+  #extras = [];          // buttons, lists and tables in sections that are no rows
 
   /// `actions` gives elements for the start and the end of a section: section name -> element.
   constructor(store, ask, actions) {
@@ -48,6 +56,8 @@ export class Panel {
       details.dataset.section = name;
       this.#sections.set(name, details);
     }
+    this.#extras = [...this.#sections.values()].flatMap(
+        details => [...details.querySelectorAll('.body > :not([data-key])')]);
     this.main.replaceChildren(...firstSections.map(name => this.#sections.get(name)));
     this.others.replaceChildren();
     this.arrangement = null;
@@ -159,16 +169,15 @@ export class Panel {
   }
 
   search() {
-    const words = byId('search').value.toLowerCase().split(/\s+/).filter(Boolean);
+    const words = byId('search').value.toLowerCase().split(/\s+/).filter(Boolean).map(stemOf);
     const searching = words.length > 0;
-    document.body.classList.toggle('searching', searching);
-    for (const row of this.#rows.values()) {
-      const matches = words.every(word => row.text.includes(word));
-      row.element.classList.toggle('unmatched', searching && !matches);
-    }
+    const show = (element, text) =>
+        element.classList.toggle('unmatched', searching && !words.every(word => text.includes(word)));
+    for (const {element, text} of this.#rows.values()) show(element, text);
+    for (const element of this.#extras) show(element, textOfAll(element));
     this.openMatches(searching);
-    const found = [...this.#rows.values()].filter(row => !row.element.classList.contains('unmatched')).length;
-    setText(byId('search-result'), searching ? `${found} found` : '');
+    const found = [...this.#rows.values()].map(row => row.element).concat(this.#extras).filter(e => e.offsetParent);
+    setText(byId('search-result'), searching ? `${found.length} found` : '');
   }
 
   /// While something is searched, sections with matches are open; afterwards they are as before.
@@ -176,7 +185,7 @@ export class Panel {
     if (searching) this.openBefore ??= [...document.querySelectorAll('#panel details.group, #panel details.section')]
         .map(details => [details, details.open]);
     for (const [details] of this.openBefore ?? []) {
-      const matches = [...details.querySelectorAll('.field[data-key]')].some(f => !f.classList.contains('unmatched'));
+      const matches = [...details.querySelectorAll('.body > *')].some(f => !f.classList.contains('unmatched'));
       details.classList.toggle('unmatched', searching && !matches);
       if (searching) details.open = matches;
     }

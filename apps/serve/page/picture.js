@@ -1,8 +1,10 @@
 // The picture on its canvas: both sides of a comparison, enlarged pixels, and where a point of the page is in it.
 
-import {drawArrows} from './arrows.js';
+import {drawArrows, strokeVisibly} from './arrows.js';
+import {same} from './dom.js';
 
 const largestZoom = 64;
+const crossGap = 4, crossReach = 12; // pixels of the page, from the cross' middle
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
 export class Picture extends EventTarget {
@@ -13,6 +15,7 @@ export class Picture extends EventTarget {
   #split = 0.5;
   #extent = null; // the state's viewport: the picture is shown as large, also while fewer pixels are rendered
   #motion = null; // of arrows.js; null: none is shown
+  #probe = null;  // where values were read, from 0 to 1 in the picture; null: no values are shown
   #waits = false;
 
   constructor(canvas) {
@@ -42,6 +45,13 @@ export class Picture extends EventTarget {
   setMotion(motion) {
     if (motion === this.#motion) return;
     this.#motion = motion;
+    this.redraw();
+  }
+
+  /// A cross where the values of a pixel were read; null removes it.
+  setProbe(position) {
+    if (same(position, this.#probe)) return;
+    this.#probe = position;
     this.redraw();
   }
 
@@ -140,7 +150,20 @@ export class Picture extends EventTarget {
     if (this.#left) draw(this.#left);
     if (this.#right) this.drawRight(draw);
     const ratio = canvas.width / Math.max(canvas.clientWidth, 1);
+    if (this.#probe) this.drawProbe(place, ratio);
+    canvas.dataset.probe = this.#probe ?? '';
     canvas.dataset.arrows = this.#motion ? drawArrows(context, this.#motion, place, ratio) : 0;
+  }
+
+  drawProbe({x, y, width, height}, ratio) {
+    const {context} = this, at = [x + this.#probe[0] * width, y + this.#probe[1] * height], path = new Path2D();
+    for (const side of [-ratio, ratio]) {
+      path.moveTo(at[0] + crossGap * side, at[1]);
+      path.lineTo(at[0] + crossReach * side, at[1]);
+      path.moveTo(at[0], at[1] + crossGap * side);
+      path.lineTo(at[0], at[1] + crossReach * side);
+    }
+    strokeVisibly(context, path, ratio);
   }
 
   drawRight(draw) {

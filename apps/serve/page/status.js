@@ -3,6 +3,7 @@
 import {byId, debounced, make, numberText, setText} from './dom.js';
 import {PassPreview} from './pass_preview.js';
 
+const mostNotes = 8;
 const units = ['bytes', 'KiB', 'MiB', 'GiB', 'TiB'];
 
 function bytesText(bytes) {
@@ -18,10 +19,12 @@ function millisecondsText(milliseconds) {
 
 export class Status {
   #dismissed = {fault: null, message: null}; // texts that are not shown any more
+  #frame = null; // the one that is being computed: its number, and since when
 
   constructor(store) {
     this.store = store;
     for (const name of ['facts', 'state']) store.addEventListener(name, () => this.show());
+    setInterval(() => this.show(), 1000); // of a long frame nothing is heard until it ends
     byId('dismiss').addEventListener('click', () => {
       for (const id of Object.keys(this.#dismissed)) this.#dismissed[id] = byId(id).textContent;
       say('');
@@ -43,17 +46,33 @@ export class Status {
     setText(byId('activity'), this.activity(facts));
     setText(byId('fact-time'), facts.frame_milliseconds > 0 ? `${millisecondsText(facts.frame_milliseconds)} a frame` : '');
     setText(byId('fact-samples'), facts.samples > 0 ? `${facts.samples} ${facts.samples === 1 ? 'sample' : 'samples'}` : `frame ${facts.frames}`);
-    setText(byId('fact-size'), (facts.extent ?? []).join(' × '));
+    setText(byId('fact-size'), (facts.picture_extent ?? []).join(' × '));
     byId('cancel').hidden = !facts.activity;
+    this.showNotes(facts.notes ?? []);
     this.showMessages(facts);
     this.showPasses(facts);
+  }
+
+  /// What was added to the scene, or left out.
+  showNotes(notes) {
+    setText(byId('scene-notes'), notes.slice(0, mostNotes).join('\n'));
+    byId('scene-notes').hidden = notes.length === 0;
   }
 
   activity(facts) {
     if (facts.activity) return facts.activity;
     if (facts.compiling) return 'compiling shaders';
-    if (facts.computing) return 'rendering';
+    if (facts.computing) return this.frameText(facts);
     return this.store.value('running') === false ? 'stopped' : 'finished';
+  }
+
+  /// Says for how long a frame takes already, and its size where the picture that is shown has fewer pixels.
+  frameText({frames, extent, picture_extent: shown}) {
+    const now = performance.now();
+    if (this.#frame?.number !== frames) this.#frame = {number: frames, since: now};
+    const seconds = Math.round((now - this.#frame.since) / 1000);
+    const size = extent && shown && extent[0] > shown[0] ? ` ${extent.join(' × ')}` : '';
+    return `rendering${size}${seconds > 1 ? `, for ${seconds} s` : ''}`;
   }
 
   showMessages(facts) {

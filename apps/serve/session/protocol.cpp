@@ -1,11 +1,15 @@
 #include "serve/session/protocol.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "base/error.h"
 #include "base/json_float.h"
+#include "image/colormap.h"
+#include "image/tone_curve.h"
 #include "renderer/method/parameters.h"
 #include "serve/session/preset_edits.h"
 #include "studio/state/state_json.h"
@@ -21,6 +25,7 @@ using studio::Request;
 /// What one message may do to the camera: a hand does less in a second.
 constexpr float largestMovement = 100.0f;
 constexpr int maxDepth = 32;
+constexpr int legendBands = 64;  ///< of the colors from 0 to 1
 
 constexpr std::array<std::pair<const char*, Request::Kind>, 13> requests{{
     {"reset", Request::Kind::Reset},
@@ -175,6 +180,21 @@ json describe(const Field& field) {
 }
 
 /// The groups of parameters that take part in each pipeline.
+/// Encoded color as CSS has it.
+std::string cssColor(const std::array<float, 3>& color) {
+    const auto byte = [&](size_t i) { return std::lround(255.0f * std::clamp(color[i], 0.0f, 1.0f)); };
+    return fmt::format("#{:02x}{:02x}{:02x}", byte(0), byte(1), byte(2));
+}
+
+/// What colors mean that stand for numbers.
+json legends() {
+    json stops = json::array(), values = json::array();
+    for (const vec3& color : image::falseColors()) stops.push_back(cssColor({color.r, color.g, color.b}));
+    for (int i = 0; i < legendBands; ++i)
+        values.push_back(cssColor(image::magma((static_cast<float>(i) + 0.5f) / legendBands)));
+    return {{"stops", std::move(stops)}, {"values", std::move(values)}};
+}
+
 json groupsByPipeline() {
     json result = json::object();
     for (const Integrator integrator : integrators()) {
@@ -224,6 +244,7 @@ json helloMessage(const std::vector<std::string>& scenes, uint64_t uploads) {
             {"scenes", scenes},
             {"uploads", uploads},
             {"presets", presetEdits()},
+            {"legends", legends()},
             {"groups", groupsByPipeline()}};
 }
 

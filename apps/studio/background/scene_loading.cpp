@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "base/log_receiver.h"
 #include "scene/motion/movement.h"
 
 namespace limpid::studio {
@@ -13,9 +14,11 @@ constexpr double loaded = 0.6;  ///< share of the time until a scene's file is r
 }  // namespace
 
 LoadedScene loadScene(const SceneLoader& load, const SceneLoading::Order& order, const Progress& progress) {
+    const log::Collector written;
     LoadedScene result{load(order.source, progress.part(0.0, loaded)), {}};
     if (order.clip && !result.scene.rig.clips.empty()) scene::chooseClip(result.scene, *order.clip);
     result.data = scene::buildSceneData(result.scene, progress.part(loaded, 1.0));
+    result.notes = written.messages();
     return result;
 }
 

@@ -21,6 +21,7 @@ using SceneLoader = std::function<scene::Scene(const scene::SceneSource& source,
 struct LoadedScene {
     scene::Scene scene;
     scene::SceneData data;
+    std::vector<std::string> notes = {};  ///< what its loading wrote: what was added or left out
 };
 
 class SceneLoading {

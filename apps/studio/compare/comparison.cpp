@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <exception>
 
 #include "image/metrics/metrics.h"
@@ -67,9 +68,10 @@ void LiveScores::compare(image::Image test, image::Image reference, float exposu
             try {
                 const image::Image shown = image::displayEncode(test, exposure),
                                    wanted = image::displayEncode(reference, exposure);
-                const double flip = image::mean(image::flip(shown, wanted));
-                return {fmt::format("PSNR {:.2f} dB, FLIP {:.4f}", image::psnr(shown, wanted), flip),
-                        static_cast<float>(flip)};
+                const double flip = image::mean(image::flip(shown, wanted)),
+                             psnr = image::psnr(shown, wanted);
+                if (std::isinf(psnr)) return {"the pictures are identical", 0.0f};
+                return {fmt::format("PSNR {:.2f} dB, FLIP {:.4f}", psnr, flip), static_cast<float>(flip)};
             } catch (const std::exception& fault) {
                 return {fault.what(), {}};
             }

@@ -91,12 +91,7 @@ void RenderLoop::carryOut(const Request& request) {
     if (kind == Kind::ResetCamera) resetCamera();
     if (kind == Kind::SeeAll) seeAll();
     if (kind == Kind::Focus) attempt([&] { focus(request.position); });
-    if (kind == Kind::Probe && main_) {
-        if (facts_.allValues.empty())
-            probeAt_ = request.position;
-        else
-            facts_.allValues.clear();
-    }
+    if (kind == Kind::Probe && main_) probe(request.position);
     if (kind == Kind::AddPoint || kind == Kind::AddSun) attempt([&] { addLamp(kind == Kind::AddSun); });
     if (kind == Kind::RemoveLamp) attempt([&] { takeLampAway(request.index); });
     if (kind == Kind::KeepSettings) state_.comparison.keep(withParts(state_.render, state_.parts));
@@ -105,6 +100,18 @@ void RenderLoop::carryOut(const Request& request) {
     if (kind == Kind::SavePng) toSave_.emplace_back(".png");
     if (kind == Kind::SaveExr) toSave_.emplace_back(".exr");
     if (kind == Kind::CommandLine) attempt([&] { makeCommand(); });
+}
+
+/// Asks for the values of another pixel, or hides those of this one.
+void RenderLoop::probe(const std::array<float, 2>& position) {
+    const gpu::Extent extent = wanted_.extent;
+    const auto pixelOf = [&](const std::array<float, 2>& at) {
+        return std::pair(pixelAt(at[0], extent.width), pixelAt(at[1], extent.height));
+    };
+    if (facts_.allValues.empty() || pixelOf(position) != pixelOf(facts_.probedAt))
+        probeAt_ = position;
+    else
+        facts_.allValues.clear();
 }
 
 void RenderLoop::resetCamera() {
@@ -160,7 +167,10 @@ void RenderLoop::placeCamera() {
 bool RenderLoop::answerProbe() {
     if (!probeAt_ || !main_ || isNew_ || (state_.running && main_.lacksReasons())) return false;
     const std::array<float, 2> position = *std::exchange(probeAt_, std::nullopt);
-    attempt([&] { facts_.allValues = probeAll(position); });
+    attempt([&] {
+        facts_.allValues = probeAll(position);
+        facts_.probedAt = position;
+    });
     return true;
 }
 

@@ -74,6 +74,7 @@ void RenderLoop::showOpened(LoadedScene scene, const SceneLoading::Order& order)
 }
 
 void RenderLoop::show(LoadedScene scene) {
+    std::vector<std::string> notes = std::move(scene.notes);
     auto stage = std::make_unique<Stage>(device_, std::move(scene), tracer_(device_));
     device_.waitIdle();
     main_.drop();
@@ -84,6 +85,7 @@ void RenderLoop::show(LoadedScene scene) {
     hasFailed_ = false;
     ++facts_.scenesShown;
     facts_.scene = stage_->scene().name;
+    facts_.notes = std::move(notes);
     facts_.sceneRadius = std::max(stage_->sphere().radius, 1e-3f);
     playback_.reset(0.0);
     flight_.reset(0.0);

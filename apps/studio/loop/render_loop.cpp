@@ -275,6 +275,7 @@ void RenderLoop::publish() {
     facts_.files = filesInUse();
     facts_.standsIn = isNew_ || networks_.isLoading();
     if (main_) choosePictures();
+    if (picture_) facts_.pictureExtent = picture_->extent;
     const bool isUnderWay = begun_ && main_ && main_.underWay() == begun_->copy;
     shown->number = ++publications_;
     shown->messages = messages_;
@@ -311,6 +312,7 @@ void RenderLoop::publishWaiting() {
     picture_ = now.copy->picture();
     facts_.downloadMilliseconds = secondsSince(begin) * 1e3;
     now.shown->picture = picture_;
+    now.shown->facts.pictureExtent = picture_->extent;
     mailbox_.publish(now.shown);
 }
 

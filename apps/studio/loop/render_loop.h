@@ -114,6 +114,7 @@ class RenderLoop {
     void choosePictures();
     bool wantsReasons() const { return !state_.pass.empty() || probeAt_; }
     void explain();
+    void probe(const std::array<float, 2>& position);
     bool answerProbe();
     void publish();
     void publishWaiting();

@@ -2,6 +2,7 @@
 // of state_json.h has of it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@ struct Facts {
     std::string device;
     std::string scene;    ///< name of the scene; empty: there is none
     int scenesShown = 0;  ///< number of scenes that were loaded so far
+    /// What was added to the scene or left out when it was loaded, such as "the scene has no camera: ...".
+    std::vector<std::string> notes;
     /// What takes longer than a frame now, such as "loading helmet.glb"; empty: nothing.
     std::string activity;
     /// Scenes and environments that are shown or being loaded, as they were asked for. They may be read
@@ -22,6 +25,7 @@ struct Facts {
     std::vector<std::string> files;
     int percent = 0;             ///< how much of it is done; 0: too little, or it is not known
     gpu::Extent extent;          ///< of the frame that is computed, or was last
+    gpu::Extent pictureExtent;   ///< of the picture that is shown: fewer pixels while something moves
     uint64_t samplesInMean = 0;  ///< per pixel; 0 for pipelines that do not accumulate
     uint64_t frames = 0;         ///< since the last reset
     uint64_t framesEver = 0;
@@ -39,6 +43,7 @@ struct Facts {
     std::string comparedWith, scores;
     Track errors;  ///< FLIP of the picture against what it is compared with, each time that it was measured
     std::string allValues;            ///< result of the last probe
+    std::array<float, 2> probedAt{};  ///< its position in the picture; only where there is a result
     std::vector<std::string> images;  ///< of State::pass
     std::string message;              ///< the last thing that was done
     bool messageIsOld = false;        ///< it need not be shown any more

@@ -415,7 +415,7 @@ void addLook(std::vector<Entry>& all) {
         {"view.stops", "inspect", "brightness", "Values are multiplied by 2 to its power", "stops"},
         Kind::Float, -32.0, 32.0, stops, [](State & s) -> auto& { return s.view.stops; }));
     all.push_back(flag(
-        {"view.false_color", "inspect", "false colour", "From black over purple to pale yellow"},
+        {"view.false_color", "inspect", "false color", "From black over purple to pale yellow"},
         [](State & s) -> auto& { return s.view.falseColor; }));
     all.push_back(flag(
         {"arrows", "inspect", "motion arrows", "Motion since the frame before, with a denoiser"},
@@ -513,8 +513,10 @@ json toJson(const Facts& facts) {
     return {{"device", facts.device},
             {"scene", facts.scene},
             {"scenes", facts.scenesShown},
+            {"notes", facts.notes},
             {"activity", facts.activityText()},
             {"extent", {facts.extent.width, facts.extent.height}},
+            {"picture_extent", {facts.pictureExtent.width, facts.pictureExtent.height}},
             {"samples", facts.samplesInMean},
             {"frames", facts.frames},
             {"computing", facts.computing},
@@ -530,6 +532,7 @@ json toJson(const Facts& facts) {
             {"scores", facts.scores},
             {"errors", facts.errors.values()},
             {"values", facts.allValues},
+            {"probed_at", facts.probedAt},
             {"images", facts.images},
             {"message", facts.messageIsOld ? "" : facts.message},
             {"fault", facts.fault},

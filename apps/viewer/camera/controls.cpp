@@ -40,6 +40,13 @@ void explain(const std::string& text) {
     ImGui::EndTooltip();
 }
 
+void explainBeside(const std::string& text) {
+    const float gap = 0.5f * ImGui::GetFontSize();
+    ImGui::SetNextWindowPos({ImGui::GetWindowPos().x - gap, ImGui::GetIO().MousePos.y}, ImGuiCond_Always,
+                            {1.0f, 0.5f});
+    explain(text);
+}
+
 void Controls::note(const std::string& name, const std::string& value) {
     const ImVec2 lower = ImGui::GetItemRectMin(), upper = ImGui::GetItemRectMax();
     note(name, value, lower.x, lower.y, upper.x, upper.y);
@@ -191,7 +198,7 @@ bool Controls::choice(const char* name, const std::vector<std::string>& choices,
             changed = number != chosen;
             chosen = number;
         }
-        if (i < help.size() && ImGui::IsItemHovered()) explain(help[i]);
+        if (i < help.size() && ImGui::IsItemHovered()) explainBeside(help[i]);
         ImGui::PopID();
         if (!appears) note(std::string(name) + "=" + choices[i]);
     }

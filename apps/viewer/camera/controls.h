@@ -25,6 +25,8 @@ struct DrawnControl {
 
 /// A text beside the mouse.
 void explain(const std::string& text);
+/// A text left of the window that is being drawn, at the height of the mouse: it covers no list.
+void explainBeside(const std::string& text);
 
 /// Every function draws a control named `name` and returns whether the user changed it. Those for values are
 /// rows: the name on the left, the control on the right.

@@ -18,6 +18,7 @@ constexpr float dividerReach = 6.0f;        ///< pixels of the window on either 
 constexpr uint32_t magnifiedPixels = 21;    ///< of the picture, per side: odd, so that one is in the middle
 constexpr float magnifierSide = 210.0f;     ///< pixels of the window
 constexpr float magnifierDistance = 24.0f;  ///< from the mouse
+constexpr float crossGap = 4.0f, crossReach = 12.0f;  ///< from the middle, pixels of the window
 constexpr ImU32 lineColor = IM_COL32(255, 255, 255, 200), shadowColor = IM_COL32(0, 0, 0, 160);
 
 float length(uint32_t pixels) {
@@ -35,7 +36,9 @@ void drawArrows(const image::Image& motion, const Area& area) {
             to{area.left + arrow.to.x, area.top + arrow.to.y};
         marks.AddLine(from, to, shadowColor, 3.0f);
         marks.AddLine(from, to, lineColor, 1.0f);
-        marks.AddCircleFilled(to, 2.5f, lineColor);
+        const auto head = arrowHead(arrow);
+        const auto corner = [&](size_t i) { return ImVec2{area.left + head[i].x, area.top + head[i].y}; };
+        marks.AddTriangleFilled(corner(0), corner(1), corner(2), lineColor);
     }
 }
 
@@ -51,6 +54,28 @@ void drawLabel(ImDrawList& marks, ImVec2 at, const std::string& text) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     marks.AddRectFilled({at.x - 4, at.y - 2}, {at.x + size.x + 4, at.y + size.y + 2}, shadowColor);
     marks.AddText(at, IM_COL32_WHITE, text.c_str());
+}
+
+/// A cross where the values were read that the panel shows.
+void drawProbe(const studio::Facts& facts, const Area& area) {
+    if (facts.allValues.empty()) return;
+    const float x = area.left + facts.probedAt[0] * area.width,
+                y = area.top + facts.probedAt[1] * area.height;
+    ImDrawList& marks = *ImGui::GetBackgroundDrawList();
+    for (const auto& [color, width] : {std::pair(shadowColor, 3.0f), std::pair(lineColor, 1.0f)}) {
+        for (const float side : {-1.0f, 1.0f}) {
+            marks.AddLine({x + side * crossGap, y}, {x + side * crossReach, y}, color, width);
+            marks.AddLine({x, y + side * crossGap}, {x, y + side * crossReach}, color, width);
+        }
+    }
+}
+
+/// What is shown instead of the picture.
+std::string nameOfInspected(const studio::Shown& shown) {
+    const std::string& pass = shown.state.pass;
+    const auto number = static_cast<size_t>(shown.state.image);
+    if (number >= shown.facts.images.size() || shown.facts.images[number] == pass) return pass;
+    return pass + ": " + shown.facts.images[number];
 }
 
 std::array<uint32_t, 2> pixelUnderMouse(gpu::Extent picture, const Area& area) {
@@ -220,11 +245,13 @@ void Display::present(PanelState& panel, const studio::Shown& shown) {
         const auto both = splitPanes(whole, compared_.texels.pane(), picture, panel.divider);
         panes.front() = both[0];
         panes.push_back(both[1]);
-        const bool named = inspected_ && !shown.facts.images.empty();
-        drawDivider(named ? shown.facts.images[static_cast<size_t>(shown.state.image)]
-                          : shown.state.render.pipeline.title(),
-                    panel, shown.facts);
+        drawDivider(inspected_ ? nameOfInspected(shown) : shown.state.render.pipeline.title(), panel,
+                    shown.facts);
     }
+    if (inspected_ && !shown.compared)
+        drawLabel(*ImGui::GetBackgroundDrawList(), {panel.area.left + 12.0f, panel.area.top + 8.0f},
+                  nameOfInspected(shown));
+    drawProbe(shown.facts, panel.area);
     if (panel.magnifier && !panes.empty()) drawMagnifier(panes, picture, panel.area);
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     for (gpu::Pane& pane : panes) pane.target = placed(pane.target, panel.area, window.x, window.y);

@@ -1,11 +1,14 @@
 #include "viewer/compare/motion_arrows.h"
 
+#include <algorithm>
+
 #include "studio/compare/motion_sample.h"
 
 namespace limpid::viewer {
 namespace {
 
 constexpr float spacing = 32.0f;
+constexpr float shortestHead = 5.0f, longestHead = 9.0f, headShare = 0.4f;  ///< the last: of the arrow
 
 }  // namespace
 
@@ -21,6 +24,16 @@ std::vector<Arrow> motionArrows(const image::Image& motion, float windowWidth, f
         }
     }
     return arrows;
+}
+
+std::array<vec2, 3> arrowHead(const Arrow& arrow) {
+    const vec2 along = arrow.to - arrow.from;
+    const float length = glm::length(along);
+    if (length == 0.0f) return {arrow.to, arrow.to, arrow.to};
+    const float size = std::clamp(headShare * length, shortestHead, longestHead);
+    const vec2 back = arrow.to - size / length * along,
+               aside = 0.5f * size / length * vec2(-along.y, along.x);
+    return {arrow.to, back + aside, back - aside};
 }
 
 }  // namespace limpid::viewer

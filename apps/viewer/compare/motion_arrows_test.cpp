@@ -23,6 +23,13 @@ TEST(MotionArrows, GoFromWhereItWas) {
     EXPECT_EQ(arrows[0].from, vec2(10.0f, 18.0f));  // the window has twice the picture's pixels
 }
 
+TEST(MotionArrows, HeadsPointTheWay) {
+    const std::array<vec2, 3> head = arrowHead({vec2(0.0f, 10.0f), vec2(15.0f, 10.0f)});
+    EXPECT_EQ(head[0], vec2(15.0f, 10.0f));
+    EXPECT_EQ(head[1], vec2(9.0f, 13.0f));
+    EXPECT_EQ(head[2], vec2(9.0f, 7.0f));
+}
+
 TEST(MotionArrows, RestAndWhatIsNotValidHaveNone) {
     EXPECT_TRUE(motionArrows(motion(0.1f, 0.1f), 128.0f, 64.0f).empty());
     EXPECT_TRUE(motionArrows(motion(5.0f, 0.0f, 0.0f), 128.0f, 64.0f).empty());

@@ -46,7 +46,7 @@ void drawAction(const Drawing& with, const Action& action, bool sameLine) {
         const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
         if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end) ImGui::SameLine();
     }
-    if (with.controls.button(action.name)) with.panel.asked.push_back({.kind = action.kind});
+    if (with.controls.button(action.name)) ask(with, action.kind);
     if (ImGui::IsItemHovered()) explain(action.help);
 }
 
@@ -56,6 +56,14 @@ void drawActions(const Drawing& with, const char* section) {
         if (std::string_view(action.section) != section) continue;
         drawAction(with, action, !std::exchange(first, false));
     }
+}
+
+void ask(const Drawing& with, RequestKind kind) {
+    studio::State& state = with.panel.state;
+    if (kind == RequestKind::KeepSettings)
+        state.comparison.keep(withParts(state.render, state.parts));
+    else
+        with.panel.asked.push_back({.kind = kind});
 }
 
 void askToOpen(const Drawing& with, const std::string& file) {

@@ -24,9 +24,13 @@ float gutter() {
     return std::round(0.8f * ImGui::GetFontSize());
 }
 
-std::string unitBehind(const Field& field) {
-    if (field.unit.empty() || field.unit.size() > longestUnit) return {};
-    return field.unit == "degrees" ? "°" : " " + field.unit;
+/// `value`: "1 level", "2 levels".
+std::string unitBehind(const Field& field, double value) {
+    const std::string& unit = field.unit;
+    if (unit.empty() || unit.size() > longestUnit) return {};
+    if (unit == "degrees") return "°";
+    const bool one = value == 1.0 && unit.size() > 1 && unit.ends_with('s');
+    return " " + (one ? unit.substr(0, unit.size() - 1) : unit);
 }
 
 /// The names that an index counts.
@@ -38,7 +42,7 @@ const std::vector<std::string>& listOf(const studio::Facts& facts, const Field& 
 void drawNumber(const Drawing& with, const Field& field, json& value) {
     Range range(field.minimum, field.maximum, field.slider);
     if (field.key == "time") range = {0.0, std::max(with.facts.duration, 1e-3)};
-    const std::string unit = unitBehind(field);
+    const std::string unit = unitBehind(field, value.get<double>());
     if (field.kind == Kind::Int) {
         int number = value.get<int>();
         if (with.controls.slider(field.label.c_str(), number, range, unit)) value = number;
@@ -132,14 +136,17 @@ void endRows() {
     ImGui::Unindent(gutter());
 }
 
+bool isDrawn(const Drawing& with, const Field& field) {
+    if (field.kind == Kind::Index) return !listOf(with.facts, field).empty();
+    if (field.kind == Kind::Text || field.kind == Kind::Extent || field.kind == Kind::Settings) return false;
+    return (field.key != "time" && field.key != "playing") || with.facts.duration > 0.0;
+}
+
 void drawField(const Drawing& with, const Field& field) {
-    const json& now = with.panel.values.at(field.key);
-    if (field.kind == Kind::Index && listOf(with.facts, field).empty()) return;
+    if (!isDrawn(with, field)) return;
     if (field.kind == Kind::Lights) return drawLightList(with);
     if (field.kind == Kind::Background) return drawBackground(with);
-    if (field.kind == Kind::Text || field.kind == Kind::Extent || field.kind == Kind::Settings) return;
-    if (field.key == "time" || field.key == "playing")
-        if (with.facts.duration <= 0.0) return;
+    const json& now = with.panel.values.at(field.key);
     json value = now;
     ImGui::PushID(field.key.c_str());
     const bool changed = !field.defaultValue.is_null() && now != field.defaultValue;

@@ -11,6 +11,9 @@ namespace limpid::viewer {
 void drawField(const Drawing& with, const studio::Field& field);
 void drawField(const Drawing& with, const char* key);
 
+/// False for what is drawn elsewhere by hand, and for what there is nothing to choose from now.
+bool isDrawn(const Drawing& with, const studio::Field& field);
+
 /// Text under the mouse, if it is over the last row.
 void explainRow(const Drawing& with, const std::string& text);
 

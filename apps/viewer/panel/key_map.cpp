@@ -16,7 +16,7 @@ constexpr std::pair<const char*, const char*> keys[] = {
     {"", ""},
     {"Space", "run or pause rendering"},
     {"V", "preview: a fast picture for finding one's way"},
-    {"P", "values of all images under the mouse; again: hide them"},
+    {"P", "values of all images under the mouse, marked by a cross; again: hide them"},
     {"Tab", "hide or show the panel"},
     {"", ""},
     {"Ctrl+Z, Ctrl+Shift+Z or Ctrl+Y", "undo, redo"},
@@ -31,13 +31,15 @@ constexpr std::pair<const char*, const char*> keys[] = {
 void drawKeyMap(Controls& controls) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * window.x, 0.5f * window.y}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, window);  // longer lists can be scrolled
     ImGui::SetNextWindowFocus();
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_PopupBg));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0f);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6.0f);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {1.4f * ImGui::GetFontSize(), ImGui::GetFontSize()});
     ImGui::Begin("keys", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
     ImGui::TextDisabled("Keys and mouse");
     ImGui::Dummy({1.0f, 0.3f * ImGui::GetFontSize()});

@@ -9,8 +9,9 @@
 #include "studio/state/state_json.h"
 #include "viewer/panel/actions.h"
 #include "viewer/panel/fields.h"
-#include "viewer/panel/sections.h"
 #include "viewer/panel/status.h"
+#include "viewer/sections/search.h"
+#include "viewer/sections/sections.h"
 
 namespace limpid::viewer {
 namespace {
@@ -18,8 +19,11 @@ namespace {
 constexpr float narrowestPanel = 220.0f, narrowestPicture = 64.0f;  ///< at a scale of 1
 constexpr float edgeWidth = 7.0f;                                   ///< of what the mouse can grip
 constexpr float largestStatus = 0.4f;                               ///< share of the panel's height
+constexpr float usualStatus = 4.0f;   ///< lines; shorter messages come and go without moving the sections
+constexpr float largestShare = 0.5f;  ///< of the window's width, that a panel takes which nobody has dragged
 constexpr ImGuiWindowFlags fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
+                                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
+                                   ImGuiWindowFlags_NoScrollWithMouse;
 
 /// The panel's edge, which can be dragged.
 void drawEdge(const Drawing& with, float height, float scale) {
@@ -58,11 +62,16 @@ void drawRun(const Drawing& with) {
     if (bigButton(with, state.running ? "pause" : "run", "running", state.running ? "on" : "off",
                   "Frames are rendered as long as they improve the picture (Space)"))
         state.running = !state.running;
+    if (with.facts.duration > 0.0) {
+        ImGui::SameLine();
+        if (bigButton(with, state.playing ? "stop clip" : "play clip", "play", state.playing ? "on" : "off",
+                      "The scene's animation, or the camera's path"))
+            state.playing = !state.playing;
+    }
     for (const Action& action : actions()) {
         if (std::string_view(action.section) != "time") continue;
         ImGui::SameLine();
-        if (bigButton(with, action.name, action.name, "", action.help))
-            with.panel.asked.push_back({.kind = action.kind});
+        if (bigButton(with, action.name, action.name, "", action.help)) ask(with, action.kind);
     }
 }
 
@@ -93,7 +102,9 @@ void drawBar(const Drawing& with) {
 void drawContent(const Drawing& with) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float left = ImGui::GetContentRegionAvail().y;
-    const float status = std::min(with.panel.statusHeight + style.ItemSpacing.y, largestStatus * left);
+    const float usual = usualStatus * ImGui::GetTextLineHeightWithSpacing();
+    const float status =
+        std::min(std::max(with.panel.statusHeight, usual) + style.ItemSpacing.y, largestStatus * left);
     ImGui::BeginChild("sections", {0.0f, std::max(left - status - 2.0f * style.ItemSpacing.y, 1.0f)});
     const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     with.controls.note("panel", "", low.x, low.y, low.x + size.x, low.y + size.y);
@@ -121,9 +132,14 @@ void step(PanelState& panel, const std::optional<nlohmann::json>& changes) {
 
 }  // namespace
 
+float panelWidthBeside(float picture) {
+    return std::clamp(picture, narrowestPanel, usualPanelWidth);
+}
+
 Area pictureArea(const PanelState& panel, float width, float height, float scale) {
-    const float wanted =
-        panel.memory.panelWidth > 0.0f ? panel.memory.panelWidth : std::round(usualPanelWidth * scale);
+    const float usual =
+        std::min(usualPanelWidth * scale, std::max(largestShare * width, narrowestPanel * scale));
+    const float wanted = panel.memory.panelWidth > 0.0f ? panel.memory.panelWidth : std::round(usual);
     const float free = std::min(wanted, width - narrowestPicture * scale);
     const bool fits = panel.shown && free >= std::min(narrowestPanel * scale, wanted);
     return {0.0f, 0.0f, fits ? width - free : width, height};

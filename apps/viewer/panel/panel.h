@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,10 +52,17 @@ struct PanelState {
     std::string reasons;        ///< why the history was kept or rejected there
     Area area;                  ///< where the picture is shown; the panel is right of it
     float statusHeight = 0.0f;  ///< pixels of the window, of the last picture
+    /// ImGui::GetTime() when the frame that is being computed was begun; none: none is.
+    std::optional<double> frameSince;
+    uint64_t frameNumber = 0;  ///< Facts::frames of then
 };
 
 /// Width of the panel before anyone has dragged its edge, in pixels of the window at a scale of 1.
 constexpr float usualPanelWidth = 400.0f;
+
+/// Width of that panel beside a picture of this width, at a scale of 1: as wide as the picture where that is
+/// narrower.
+float panelWidthBeside(float picture);
 
 /// Divides a window of this size between the picture and the panel, which gives way in small windows.
 /// `scale`: how much larger than nominal everything is drawn.

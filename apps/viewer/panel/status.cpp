@@ -19,8 +19,30 @@ void drawText(ImU32 color, const std::string& text) {
     ImGui::PopStyleColor();
 }
 
+constexpr double longFrame = 1.0;  ///< seconds, after which it is told how long a frame takes
+
+/// Seconds for which the frame that is being computed takes already; 0: none is.
+double secondsOfFrame(const Drawing& with) {
+    PanelState& panel = with.panel;
+    const Facts& facts = with.facts;
+    if (!facts.computing) panel.frameSince.reset();
+    if (facts.computing && (!panel.frameSince || panel.frameNumber != facts.frames)) {
+        panel.frameSince = ImGui::GetTime();
+        panel.frameNumber = facts.frames;
+    }
+    return panel.frameSince ? ImGui::GetTime() - *panel.frameSince : 0.0;
+}
+
 const char* frameText(const Facts& facts) {
     return facts.compiling ? "compiling shaders" : facts.computing ? "computing" : "finished";
+}
+
+/// Of the picture that is shown.
+std::string pictureText(const Facts& facts) {
+    std::string text = fmt::format("{}x{}, ", facts.pictureExtent.width, facts.pictureExtent.height);
+    if (const float time = facts.timings.frames().last(); time > 0.0f)
+        text += studio::durationText(time) + " a frame, ";
+    return text + facts.device;
 }
 
 /// What takes longer than a frame, or how far the picture is.
@@ -35,10 +57,14 @@ void drawActivity(const Drawing& with) {
     }
     if (facts.scenesShown == 0) return ImGui::TextUnformatted("no scene");
     std::string text = with.panel.state.running ? frameText(facts) : "paused";
+    const double seconds = secondsOfFrame(with);
+    if (facts.computing && facts.extent.width > facts.pictureExtent.width)
+        text += fmt::format(" {}x{}", facts.extent.width, facts.extent.height);
     if (facts.samplesInMean > 0)
         text += fmt::format(": {} of {} samples", facts.samplesInMean, with.panel.state.maxSamples);
     else
         text += fmt::format(": frame {}", facts.frames);
+    if (seconds > longFrame) text += fmt::format(", for {:.0f} s", seconds);
     ImGui::TextUnformatted(text.c_str());
 }
 
@@ -50,11 +76,7 @@ void drawStatus(const Drawing& with) {
     const float start = ImGui::GetCursorPosY();
     drawActivity(with);
     with.controls.note("status", facts.activity.empty() ? frameText(facts) : facts.activityText());
-    const studio::State& state = with.panel.state;
-    if (facts.scenesShown > 0)
-        drawText(colors.quiet,
-                 fmt::format("{}x{}, {} a frame, {}", state.render.extent.width, state.render.extent.height,
-                             studio::durationText(facts.timings.frames().last()), facts.device));
+    if (facts.scenesShown > 0) drawText(colors.quiet, pictureText(facts));
     if (!facts.fault.empty()) {
         drawText(colors.fault, facts.fault);
         with.controls.note("error", facts.fault);

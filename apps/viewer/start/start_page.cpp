@@ -43,7 +43,11 @@ void drawScenes(const Drawing& with, const Thumbnails& thumbnails) {
     int column = 0;
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
         const auto found = thumbnails.places().find(info.name);
-        if (found == thumbnails.places().end()) continue;
+        if (found == thumbnails.places().end()) {  // the program was copied without its pictures
+            if (with.controls.button(info.name.c_str())) askToOpen(with, "builtin:" + info.name);
+            if (ImGui::IsItemHovered()) explain(info.help);
+            continue;
+        }
         if (column > 0) ImGui::SameLine(0.0f, gap);
         if (drawCard(with, info.name, found->second, width)) askToOpen(with, "builtin:" + info.name);
         if (ImGui::IsItemHovered()) explain(info.help);

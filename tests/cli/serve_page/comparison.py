@@ -1,7 +1,7 @@
 """Two pictures, and the line between them."""
 
 from browser import check
-from page import box_of, center, choose, evaluate, settle
+from page import box_of, center, choose, click_on, evaluate, settle
 
 
 def test_comparison(browser):
@@ -34,4 +34,15 @@ def test_comparison(browser):
     after = browser.evaluate("Number(document.getElementById('divider').getAttribute('aria-valuenow'))")
     check(after == now + 1, f'a key moves the divider from {now} to {after}')
     choose(browser, 'compare', 'nothing')
+    browser.wait("document.getElementById('divider').hidden", 'the end of the comparison')
+
+
+def test_kept_settings(browser):
+    """To keep the settings is a step of undo."""
+    compared = "document.getElementById('field-compare').selectedOptions[0].textContent"
+    click_on(browser, '[data-request=keep_settings]')
+    browser.wait(f"{compared} === 'kept settings'", 'the kept settings')
+    browser.wait("document.getElementById('undo').title.startsWith('Undo: keep these settings')", 'the step')
+    click_on(browser, '#undo')
+    browser.wait(f"{compared} === 'nothing'", 'the step, undone')
     browser.wait("document.getElementById('divider').hidden", 'the end of the comparison')

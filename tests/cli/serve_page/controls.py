@@ -131,7 +131,15 @@ def test_search(browser):
         .filter(f => f.offsetParent).map(f => f.dataset.key)''')
     check('exposure' in shown and 'seed' not in shown and len(shown) < 10, f'found: {shown}')
     found = browser.evaluate("document.getElementById('search-result').textContent")
-    check(found == f'{len(shown)} found', f'it says {found}')
+    everything = "[...document.querySelectorAll('#panel .body > *')].filter(e => e.offsetParent).length"
+    check(found == f'{browser.evaluate(everything)} found', f'it says {found}')
+    for words, place in (('automatic camera', '[data-request=see_all]'), ('firefly', '[data-key="svgf.fireflies"]'),
+                         ('passes images', '.passes')):
+        browser.evaluate("document.getElementById('search').value = ''")
+        browser.type(words)
+        visible = browser.evaluate(f"Boolean(document.querySelector('{place}').offsetParent)")
+        check(visible, f'"{words}" does not find {place}')
+        check(not browser.evaluate("document.querySelector('[data-key=seed]').offsetParent"), 'it finds the seed')
     browser.evaluate("document.getElementById('search').value = ''")
     browser.type(' ')
     check(browser.evaluate("document.querySelector('[data-key=seed]').offsetParent !== null"), 'the search stays')

@@ -64,6 +64,9 @@ def test_inspection(browser):
     time.sleep(0.3)
     settle(browser, 'false colours')
     check(evaluate(browser, 'return difference(before, await pixels()).mean;') > 3, 'false colours change nothing')
+    legend = browser.evaluate("""[...document.querySelectorAll('.legend:not([hidden]) .values span')]
+        .map(each => each.textContent)""")
+    check(legend == ['0', '1 and more'], f'the legend of false colours says {legend}')
     click_on(browser, '[data-key="view.false_color"] .reset')
     choose(browser, 'pass', 'pathtrace')
     images = browser.wait('''(() => {
@@ -116,6 +119,22 @@ def test_preview(browser):
     browser.wait(f"({shown}).startsWith('{PASS}')", 'the choice, done again')
     click_on(browser, '#show-picture')
     browser.wait(f"!({INSPECTED})", 'the picture')
+
+
+def test_probe(browser):
+    """P reads the pixel under the mouse, and marks it; elsewhere it reads another, and again it hides the values."""
+    values = "document.getElementById('values').hidden ? '' : document.getElementById('values').textContent"
+    cross = "document.getElementById('picture').dataset.probe"
+    x, y = stage_center(browser)
+    browser.mouse('mouseMoved', x, y, 0)
+    browser.key('p')
+    first = browser.wait(f"({values}).startsWith('pixel (') && ({values})", 'the values of the pixel')
+    browser.wait(f"{cross}.split(',').every(each => Math.abs(each - 0.5) < 0.02) && {cross}", 'the cross')
+    browser.mouse('mouseMoved', x + 60, y, 0)
+    browser.key('p')
+    browser.wait(f"({values}).startsWith('pixel (') && ({values}).split(')')[0] !== '{first.split(')')[0]}'", 'others')
+    browser.key('p')
+    browser.wait(f"({values}) === '' && {cross} === ''", 'no values')
 
 
 def test_arrows(browser):

@@ -1,4 +1,4 @@
-#include "viewer/panel/passes.h"
+#include "viewer/sections/passes.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/text/bytes_text.h"
+#include "viewer/looks/legends.h"
 #include "viewer/panel/fields.h"
 
 namespace limpid::viewer {
@@ -49,6 +50,7 @@ void drawInspector(const Drawing& with) {
     if (chosenPass(with.panel).empty() || with.facts.images.empty()) return;
     beginRows();
     for (const char* key : {"image", "view.channels", "view.stops", "view.false_color"}) drawField(with, key);
+    if (with.panel.state.view.falseColor) drawColormapLegend(with.controls, with.panel.state.view.stops);
     endRows();
     ImGui::TextUnformatted(with.panel.probe.c_str());
     ImGui::TextWrapped("%s", with.panel.reasons.c_str());
@@ -58,6 +60,15 @@ void plot(const char* name, const Track& track, ImVec2 size, const char* text = 
     const float largest = track.values().empty() ? 1.0f : *std::ranges::max_element(track.values());
     ImGui::PlotLines(name, track.values().data(), static_cast<int>(track.values().size()), 0, text, 0.0f,
                      1.1f * largest, size);
+}
+
+/// The way back from a pass that was chosen.
+void drawPictureRow(const Drawing& with) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    if (ImGui::Selectable("the picture", chosenPass(with.panel).empty(), ImGuiSelectableFlags_SpanAllColumns))
+        choosePass(with.panel, "");
+    with.controls.note("pass none");
 }
 
 void drawSums(const Drawing& with) {
@@ -89,6 +100,7 @@ void drawPasses(const Drawing& with) {
     ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch);
     ImGui::TableSetupColumn("graph", ImGuiTableColumnFlags_WidthFixed, graphWidth);
     ImGui::TableSetupColumn("time", ImGuiTableColumnFlags_WidthFixed, 5.0f * ImGui::GetFontSize());
+    drawPictureRow(with);
     for (const PassTrack& pass : with.facts.timings.passes()) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
