@@ -77,7 +77,6 @@ TEST_F(StudioTest, AMissingFileIsToldBeforeTheFrameEnds) {
     studio->finish();
 }
 
-/// A hand that drags a colour asks for many scenes. None but the last is needed.
 TEST_F(StudioTest, TellsWhatWasAddedToAScene) {
     const auto studio = make(small(), [](const scene::SceneSource& source, const Progress& progress) {
         if (source.scene == "builtin:lab-mirror") log::warn("a soft sky was added");
@@ -94,6 +93,7 @@ TEST_F(StudioTest, TellsWhatWasAddedToAScene) {
     studio->finish();
 }
 
+/// A hand that drags a colour asks for many scenes. None but the last is needed.
 TEST_F(StudioTest, OneSceneIsLoadedAtATime) {
     std::atomic<int> running = 0, most = 0, loads = 0;
     const auto studio = make(small(), [&](const scene::SceneSource& source, const Progress& progress) {

@@ -64,8 +64,9 @@ ViewerWindow::ViewerWindow(const gpu::DeviceOptions& options, const ViewSettings
     chooseRange();
     const float scale = screen_->display.interface().scale();
     if (panel_.memory.panelWidth == 0.0f && scale > 1.0f) {
-        const gpu::Extent size = window_.size();
-        window_.resize({size.width + static_cast<uint32_t>((scale - 1.0f) * usualPanelWidth), size.height});
+        const uint32_t picture = settings.studio.render.extent.width;
+        const float panel = scale * panelWidthBeside(static_cast<float>(picture) / scale);
+        window_.resize({picture + static_cast<uint32_t>(panel), window_.size().height});
     }
 }
 

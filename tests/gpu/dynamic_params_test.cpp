@@ -42,6 +42,22 @@ TEST(DynamicParams, WhatIsNoSpirvStays) {
     EXPECT_EQ(gpu::withDynamicParams(none), none);
 }
 
+/// Instructions without their operands, and modules that end too soon.
+TEST(DynamicParams, WhatIsDamagedStays) {
+    const std::span<const uint32_t> whole = shaders::listed().front().code->words;
+    const Words header(whole.begin(), whole.begin() + 5);
+    for (const uint32_t op : {15u, 20u, 21u, 23u, 32u, 59u, 61u, 65u, 66u, 71u}) {
+        for (const uint32_t length : {0u, 1u, 2u, 3u, 9u}) {
+            Words module = header;
+            module.push_back(length << 16 | op);
+            for (uint32_t i = 1; i < std::min(length, 4u); ++i) module.push_back(7);
+            EXPECT_EQ(gpu::withDynamicParams(module), module) << op << " " << length;
+        }
+    }
+    for (size_t length = 0; length < whole.size(); length += 97)
+        EXPECT_NO_THROW(gpu::withDynamicParams(whole.first(length)));
+}
+
 #if LIMPID_HAVE_SPIRV_TOOLS_OPT
 TEST(DynamicParams, AllShadersStayValid) {
     spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "gpu/vulkan/execute/dynamic_params.h"
 #include "scene/builtin/builtin.h"
 #include "shader_list.h"
 #include "tests/gpu/render_fixture.h"
@@ -68,6 +69,9 @@ TEST_F(SpecialiseTest, AllShadersStayValid) {
             EXPECT_TRUE(tools.Validate(result.data(), result.size(), options))
                 << listed.code->name << ", all switches " << on << ": " << fault;
             EXPECT_TRUE(switchesOf(result).empty()) << listed.code->name;
+            const std::vector<uint32_t> dynamic = gpu::withDynamicParams(result);
+            EXPECT_TRUE(tools.Validate(dynamic.data(), dynamic.size(), options))
+                << listed.code->name << ", as CPUs get it: " << fault;
         }
         EXPECT_LT(std::min(sizes[0], sizes[1]), words.size()) << listed.code->name;
     }

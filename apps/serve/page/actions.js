@@ -103,7 +103,10 @@ function rememberRequest(store, keys, name) {
     waiting = null;
     if (!same(before, after)) store.remember(before, after, name);
   });
-  return id => { waiting = {id, before: valuesNow()}; };
+  for (const name of ['lost', 'scene']) store.addEventListener(name, () => { waiting = null; });
+  return id => {
+    if (store.hasState()) waiting = {id, before: valuesNow()}; // else the connection is lost
+  };
 }
 
 /// Elements by section: some stand at its start, some at its end. `moved` hears of requests that move the camera.

@@ -30,6 +30,12 @@ export class Status {
       say('');
       this.show();
     });
+    // What the keyboard reaches is not to hide behind what sticks to the panel's ends.
+    const panel = byId('panel'), ends = {top: byId('panel-head'), bottom: byId('messages')};
+    const observer = new ResizeObserver(() => {
+      panel.style.scrollPaddingBlock = `${ends.top.offsetHeight}px ${ends.bottom.offsetHeight}px`;
+    });
+    for (const end of Object.values(ends)) observer.observe(end);
     this.preview = new PassPreview(store);
     this.passes = make('tbody', {pointerleave: () => this.preview.leave()});
     this.memory = make('p', {className: 'note'});
@@ -44,9 +50,11 @@ export class Status {
     setText(byId('scene-name'), facts.scene || 'no scene');
     setText(byId('device'), facts.device);
     setText(byId('activity'), this.activity(facts));
+    setText(byId('activity-time'), this.secondsText(facts));
     setText(byId('fact-time'), facts.frame_milliseconds > 0 ? `${millisecondsText(facts.frame_milliseconds)} a frame` : '');
     setText(byId('fact-samples'), facts.samples > 0 ? `${facts.samples} ${facts.samples === 1 ? 'sample' : 'samples'}` : `frame ${facts.frames}`);
-    setText(byId('fact-size'), (facts.picture_extent ?? []).join(' × '));
+    const size = facts.picture_extent ?? [0, 0];
+    setText(byId('fact-size'), size[0] > 0 ? size.join(' × ') : '');
     byId('cancel').hidden = !facts.activity;
     this.showNotes(facts.notes ?? []);
     this.showMessages(facts);
@@ -55,7 +63,8 @@ export class Status {
 
   /// What was added to the scene, or left out.
   showNotes(notes) {
-    setText(byId('scene-notes'), notes.slice(0, mostNotes).join('\n'));
+    const rest = notes.length > mostNotes ? [`and ${notes.length - mostNotes} more`] : [];
+    setText(byId('scene-notes'), [...notes.slice(0, mostNotes), ...rest].join('\n'));
     byId('scene-notes').hidden = notes.length === 0;
   }
 
@@ -66,13 +75,21 @@ export class Status {
     return this.store.value('running') === false ? 'stopped' : 'finished';
   }
 
-  /// Says for how long a frame takes already, and its size where the picture that is shown has fewer pixels.
-  frameText({frames, extent, picture_extent: shown}) {
-    const now = performance.now();
-    if (this.#frame?.number !== frames) this.#frame = {number: frames, since: now};
+  /// "rendering", with the frame's size where the picture that is shown has fewer pixels.
+  frameText({extent, picture_extent: shown}) {
+    return extent && shown && extent[0] > shown[0] ? `rendering ${extent.join(' × ')}` : 'rendering';
+  }
+
+  /// For how long a frame is computed already; not for screen readers, which would speak each second.
+  secondsText({computing, activity, frames, frames_begun: begun}) {
+    const now = performance.now(), number = `${frames} ${begun}`;
+    if (!computing || activity) {
+      this.#frame = null;
+      return '';
+    }
+    if (this.#frame?.number !== number) this.#frame = {number, since: now};
     const seconds = Math.round((now - this.#frame.since) / 1000);
-    const size = extent && shown && extent[0] > shown[0] ? ` ${extent.join(' × ')}` : '';
-    return `rendering${size}${seconds > 1 ? `, for ${seconds} s` : ''}`;
+    return seconds > 1 ? `for ${seconds} s` : '';
   }
 
   showMessages(facts) {

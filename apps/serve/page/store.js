@@ -113,6 +113,7 @@ export class Store extends EventTarget {
     this.#server = {};
     this.#included = 0;
     this.#acknowledged = {id: 0, number: 0};
+    this.#changed('lost');
   }
 
   /// While a control is held, it keeps what the user does with it, whatever states arrive.

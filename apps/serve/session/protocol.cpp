@@ -179,7 +179,6 @@ json describe(const Field& field) {
     return result;
 }
 
-/// The groups of parameters that take part in each pipeline.
 /// Encoded color as CSS has it.
 std::string cssColor(const std::array<float, 3>& color) {
     const auto byte = [&](size_t i) { return std::lround(255.0f * std::clamp(color[i], 0.0f, 1.0f)); };
@@ -195,6 +194,7 @@ json legends() {
     return {{"stops", std::move(stops)}, {"values", std::move(values)}};
 }
 
+/// The groups of parameters that take part in each pipeline.
 json groupsByPipeline() {
     json result = json::object();
     for (const Integrator integrator : integrators()) {

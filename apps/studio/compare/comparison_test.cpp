@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <thread>
 
+#include "base/error.h"
 #include "renderer/method/parameters.h"
+#include "studio/state/state_json.h"
 
 namespace limpid::studio {
 namespace {
@@ -77,6 +79,20 @@ TEST(Comparison, KeptSettingsStayAsTheyWere) {
     EXPECT_EQ(assignmentsOf(other), std::vector<std::string>{"svgf.levels=2"});
     EXPECT_EQ(other.seed, 8u);
     EXPECT_EQ(other.extent, settings.extent);
+}
+
+/// They also travel as JSON, with the jitter that was in force.
+TEST(Comparison, KeptSettingsTravelWithTheirJitter) {
+    State state, other;
+    state.render.pipeline = parsePipeline("path", "svgf");
+    for (const Jitter jitter : {Jitter::Pixel, Jitter::Frame, Jitter::Off}) {
+        state.render.jitter = jitter;
+        state.comparison.keep(state.render);
+        apply(other, {{"kept_settings", toJson(state)["kept_settings"]}});
+        EXPECT_EQ(other.comparison.kept.jitter, jitter);
+        EXPECT_EQ(other.comparison.kept.pipeline, state.render.pipeline);
+    }
+    EXPECT_THROW(apply(other, {{"kept_settings", {"jitter=often"}}}), UsageError);
 }
 
 TEST(LiveScores, AreThoseOfTheDisplayedPictures) {

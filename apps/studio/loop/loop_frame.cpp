@@ -128,6 +128,7 @@ bool RenderLoop::renderNext() {
     const bool other =
         !main && main_ && state_.running && comparison_.mustRender(state_, wanted_, camera, false);
     const bool news = !facts_.computing || !main_ || wanted_.extent != main_.settings().extent;
+    if (main) ++facts_.framesBegun;
     if (main && news) announce();
     if (main) renderTimed(camera);
     if (other) comparison_.render(*stage_, state_, wanted_, playback_.moment(camera), true);

@@ -108,10 +108,12 @@ void RenderLoop::probe(const std::array<float, 2>& position) {
     const auto pixelOf = [&](const std::array<float, 2>& at) {
         return std::pair(pixelAt(at[0], extent.width), pixelAt(at[1], extent.height));
     };
-    if (facts_.allValues.empty() || pixelOf(position) != pixelOf(facts_.probedAt))
+    if (facts_.allValues.empty() || pixelOf(position) != pixelOf(facts_.probedAt)) {
         probeAt_ = position;
-    else
-        facts_.allValues.clear();
+        return;
+    }
+    facts_.allValues.clear();
+    probeAt_.reset();
 }
 
 void RenderLoop::resetCamera() {

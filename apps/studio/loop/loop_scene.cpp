@@ -86,6 +86,8 @@ void RenderLoop::show(LoadedScene scene) {
     ++facts_.scenesShown;
     facts_.scene = stage_->scene().name;
     facts_.notes = std::move(notes);
+    facts_.allValues.clear();
+    probeAt_.reset();
     facts_.sceneRadius = std::max(stage_->sphere().radius, 1e-3f);
     playback_.reset(0.0);
     flight_.reset(0.0);

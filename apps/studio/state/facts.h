@@ -29,8 +29,9 @@ struct Facts {
     uint64_t samplesInMean = 0;  ///< per pixel; 0 for pipelines that do not accumulate
     uint64_t frames = 0;         ///< since the last reset
     uint64_t framesEver = 0;
-    bool computing = false;  ///< false: the picture is finished, or rendering is stopped
-    bool compiling = false;  ///< the frame that is computed needs shaders that were not compiled before
+    uint64_t framesBegun = 0;  ///< more than were finished: some are given up
+    bool computing = false;    ///< false: the picture is finished, or rendering is stopped
+    bool compiling = false;    ///< the frame that is computed needs shaders that were not compiled before
     /// The picture is that of a simpler method, until pipelines are compiled or a network is loaded.
     bool standsIn = false;
     double duration = 0.0;  ///< of the clip or the path, seconds; 0: nothing plays

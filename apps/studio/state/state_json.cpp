@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "base/error.h"
 #include "base/json_float.h"
@@ -201,17 +202,26 @@ Entry viewportEntry() {
 
 // ---- The method
 
-/// The settings as a list of assignments: "integrator=path", "denoiser=svgf", "svgf.levels=3".
+/// The settings as a list of assignments: "integrator=path", "denoiser=svgf", "jitter=frame",
+/// "svgf.levels=3".
 json assignmentsJson(const RenderSettings& settings) {
     json list = json::array({"integrator=" + std::string(nameOf(settings.pipeline.integrator)),
-                             "denoiser=" + std::string(nameOf(settings.pipeline.denoiser))});
+                             "denoiser=" + std::string(nameOf(settings.pipeline.denoiser)),
+                             "jitter=" + std::string(toString(settings.jitter))});
     for (const std::string& text : assignmentsOf(settings)) list.push_back(text);
     return list;
+}
+
+Jitter jitterOf(const std::string& name) {
+    for (const Jitter jitter : {Jitter::Pixel, Jitter::Frame, Jitter::Off})
+        if (name == toString(jitter)) return jitter;
+    refuse("kept_settings", "there is no jitter '" + name + "'");
 }
 
 RenderSettings settingsOf(const json& list) {
     RenderSettings settings;
     std::string integrator = "path", denoiser = "none";
+    std::optional<Jitter> jitter;
     if (!list.is_array() || list.size() > 1000) refuse("kept_settings", "a list of assignments is needed");
     for (const json& item : list) {
         const auto text = item.get<std::string>();
@@ -219,11 +229,13 @@ RenderSettings settingsOf(const json& list) {
             integrator = text.substr(11);
         else if (text.starts_with("denoiser="))
             denoiser = text.substr(9);
+        else if (text.starts_with("jitter="))
+            jitter = jitterOf(text.substr(7));
         else
             assign(settings, text);
     }
     settings.pipeline = parsePipeline(integrator, denoiser);
-    settings.jitter = defaultJitter(settings.pipeline);
+    settings.jitter = jitter.value_or(defaultJitter(settings.pipeline));
     return settings;
 }
 
@@ -519,6 +531,7 @@ json toJson(const Facts& facts) {
             {"picture_extent", {facts.pictureExtent.width, facts.pictureExtent.height}},
             {"samples", facts.samplesInMean},
             {"frames", facts.frames},
+            {"frames_begun", facts.framesBegun},
             {"computing", facts.computing},
             {"compiling", facts.compiling},
             {"duration", facts.duration},

@@ -44,7 +44,7 @@ json otherValue(const Field& field, const json& now) {
         case Field::Kind::Extent:
             return json::array({640, 480});
         case Field::Kind::Settings:
-            return json::array({"integrator=ao", "denoiser=svgf", "svgf.levels=3"});
+            return json::array({"integrator=ao", "denoiser=svgf", "jitter=off", "svgf.levels=3"});
         case Field::Kind::Lights:
             break;
     }

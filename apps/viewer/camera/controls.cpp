@@ -15,7 +15,8 @@ namespace limpid::viewer {
 namespace {
 
 constexpr float maxOfAVector = 1e9f;
-constexpr float nameShare = 0.4f;  ///< of a row's width, that its name may have
+constexpr float widestHelp = 26.0f;  ///< in heights of a line
+constexpr float nameShare = 0.4f;    ///< of a row's width, that its name may have
 
 /// Draws ImGui's slider over positions from 0 to 1 with the value as its text: we define the scale. A typed
 /// number (Ctrl and a click) is the value itself and may lie outside the slider's span.
@@ -32,18 +33,25 @@ std::optional<double> slide(const char* name, const std::string& shown, const Sl
 
 }  // namespace
 
+void sameLineFor(const char* text) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float width = ImGui::CalcTextSize(text).x + 2.0f * style.FramePadding.x;
+    const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end) ImGui::SameLine();
+}
+
 void explain(const std::string& text) {
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(26.0f * ImGui::GetFontSize());
+    ImGui::PushTextWrapPos(widestHelp * ImGui::GetFontSize());
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
 }
 
 void explainBeside(const std::string& text) {
-    const float gap = 0.5f * ImGui::GetFontSize();
-    ImGui::SetNextWindowPos({ImGui::GetWindowPos().x - gap, ImGui::GetIO().MousePos.y}, ImGuiCond_Always,
-                            {1.0f, 0.5f});
+    const float gap = 0.5f * ImGui::GetFontSize(), left = ImGui::GetWindowPos().x - gap;
+    if (left > widestHelp * ImGui::GetFontSize() + 2.0f * ImGui::GetStyle().WindowPadding.x)
+        ImGui::SetNextWindowPos({left, ImGui::GetIO().MousePos.y}, ImGuiCond_Always, {1.0f, 0.5f});
     explain(text);
 }
 

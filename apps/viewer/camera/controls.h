@@ -23,6 +23,9 @@ struct DrawnControl {
           bottom = 0.0f;  ///< pixels of the window; outside it: scrolled away
 };
 
+/// The next button, with this text, goes beside what was drawn last, if it fits.
+void sameLineFor(const char* text);
+
 /// A text beside the mouse.
 void explain(const std::string& text);
 /// A text left of the window that is being drawn, at the height of the mouse: it covers no list.

@@ -40,12 +40,7 @@ const std::vector<Action>& actions() {
 }
 
 void drawAction(const Drawing& with, const Action& action, bool sameLine) {
-    if (sameLine) {
-        const ImGuiStyle& style = ImGui::GetStyle();
-        const float width = ImGui::CalcTextSize(action.name).x + 2.0f * style.FramePadding.x;
-        const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-        if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end) ImGui::SameLine();
-    }
+    if (sameLine) sameLineFor(action.name);
     if (with.controls.button(action.name)) ask(with, action.kind);
     if (ImGui::IsItemHovered()) explain(action.help);
 }

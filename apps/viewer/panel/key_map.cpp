@@ -16,7 +16,7 @@ constexpr std::pair<const char*, const char*> keys[] = {
     {"", ""},
     {"Space", "run or pause rendering"},
     {"V", "preview: a fast picture for finding one's way"},
-    {"P", "values of all images under the mouse, marked by a cross; again: hide them"},
+    {"P", "values of all images under the mouse, marked by a cross; at the same pixel: hide them"},
     {"Tab", "hide or show the panel"},
     {"", ""},
     {"Ctrl+Z, Ctrl+Shift+Z or Ctrl+Y", "undo, redo"},

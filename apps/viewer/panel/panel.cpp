@@ -63,14 +63,15 @@ void drawRun(const Drawing& with) {
                   "Frames are rendered as long as they improve the picture (Space)"))
         state.running = !state.running;
     if (with.facts.duration > 0.0) {
-        ImGui::SameLine();
-        if (bigButton(with, state.playing ? "stop clip" : "play clip", "play", state.playing ? "on" : "off",
+        const char* const text = state.playing ? "stop clip" : "play clip";
+        sameLineFor(text);
+        if (bigButton(with, text, "play", state.playing ? "on" : "off",
                       "The scene's animation, or the camera's path"))
             state.playing = !state.playing;
     }
     for (const Action& action : actions()) {
         if (std::string_view(action.section) != "time") continue;
-        ImGui::SameLine();
+        sameLineFor(action.name);
         if (bigButton(with, action.name, action.name, "", action.help)) ask(with, action.kind);
     }
 }
@@ -80,7 +81,7 @@ void drawHistory(const Drawing& with) {
     ImGui::BeginDisabled(!panel.history.canUndo());
     if (bigButton(with, "undo", "undo", "", "Takes back the last change (Ctrl+Z)")) undo(panel);
     ImGui::EndDisabled();
-    ImGui::SameLine();
+    sameLineFor("redo");
     ImGui::BeginDisabled(!panel.history.canRedo());
     if (bigButton(with, "redo", "redo", "", "Makes the change again (Ctrl+Shift+Z, Ctrl+Y)")) redo(panel);
     ImGui::EndDisabled();
@@ -89,9 +90,9 @@ void drawHistory(const Drawing& with) {
 void drawBar(const Drawing& with) {
     PanelState& panel = with.panel;
     drawRun(with);
-    ImGui::SameLine();
+    sameLineFor("undo");
     drawHistory(with);
-    ImGui::SameLine();
+    sameLineFor("?");
     if (bigButton(with, "?", "keys", "", "Keys and mouse (?)")) panel.showsKeys = !panel.showsKeys;
     if (std::exchange(panel.focusesSearch, false)) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1.0f);

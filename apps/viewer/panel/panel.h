@@ -1,6 +1,7 @@
 // The panel beside the picture: what is rendered, how, and how long it takes.
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -54,7 +55,7 @@ struct PanelState {
     float statusHeight = 0.0f;  ///< pixels of the window, of the last picture
     /// ImGui::GetTime() when the frame that is being computed was begun; none: none is.
     std::optional<double> frameSince;
-    uint64_t frameNumber = 0;  ///< Facts::frames of then
+    std::array<uint64_t, 2> frameNumber{};  ///< Facts::frames and framesBegun of then
 };
 
 /// Width of the panel before anyone has dragged its edge, in pixels of the window at a scale of 1.

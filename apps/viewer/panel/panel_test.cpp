@@ -18,8 +18,11 @@ TEST(PictureArea, IsWhatThePanelLeaves) {
 
 TEST(PictureArea, IsThatOfThePictureThatWasAskedFor) {
     const PanelState panel;
-    for (const float width : {100.0f, 250.0f, 390.0f, 400.0f, 1280.0f})
-        EXPECT_EQ(pictureArea(panel, width + panelWidthBeside(width), 800.0f, 1.0f).width, width);
+    for (const float width : {130.0f, 250.0f, 390.0f, 400.0f, 1280.0f})
+        for (const float scale : {1.0f, 2.0f}) {
+            const float beside = scale * panelWidthBeside(width / scale);
+            EXPECT_EQ(pictureArea(panel, width + beside, 800.0f, scale).width, width) << scale;
+        }
 }
 
 TEST(PictureArea, ThePanelGivesWayInSmallWindows) {

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 
 #include "viewer/looks/theme.h"
 
@@ -26,9 +27,10 @@ double secondsOfFrame(const Drawing& with) {
     PanelState& panel = with.panel;
     const Facts& facts = with.facts;
     if (!facts.computing) panel.frameSince.reset();
-    if (facts.computing && (!panel.frameSince || panel.frameNumber != facts.frames)) {
+    const std::array<uint64_t, 2> number{facts.frames, facts.framesBegun};
+    if (facts.computing && (!panel.frameSince || panel.frameNumber != number)) {
         panel.frameSince = ImGui::GetTime();
-        panel.frameNumber = facts.frames;
+        panel.frameNumber = number;
     }
     return panel.frameSince ? ImGui::GetTime() - *panel.frameSince : 0.0;
 }
@@ -39,7 +41,9 @@ const char* frameText(const Facts& facts) {
 
 /// Of the picture that is shown.
 std::string pictureText(const Facts& facts) {
-    std::string text = fmt::format("{}x{}, ", facts.pictureExtent.width, facts.pictureExtent.height);
+    std::string text;
+    if (facts.pictureExtent.width > 0)
+        text = fmt::format("{}x{}, ", facts.pictureExtent.width, facts.pictureExtent.height);
     if (const float time = facts.timings.frames().last(); time > 0.0f)
         text += studio::durationText(time) + " a frame, ";
     return text + facts.device;
@@ -48,6 +52,7 @@ std::string pictureText(const Facts& facts) {
 /// What takes longer than a frame, or how far the picture is.
 void drawActivity(const Drawing& with) {
     const Facts& facts = with.facts;
+    const double seconds = secondsOfFrame(with);
     if (!facts.activity.empty()) {
         ImGui::TextUnformatted(facts.activityText().c_str());
         ImGui::SameLine();
@@ -57,7 +62,6 @@ void drawActivity(const Drawing& with) {
     }
     if (facts.scenesShown == 0) return ImGui::TextUnformatted("no scene");
     std::string text = with.panel.state.running ? frameText(facts) : "paused";
-    const double seconds = secondsOfFrame(with);
     if (facts.computing && facts.extent.width > facts.pictureExtent.width)
         text += fmt::format(" {}x{}", facts.extent.width, facts.extent.height);
     if (facts.samplesInMean > 0)

@@ -99,10 +99,12 @@ void drawFound(const Drawing& with) {
         if (finder.finds(action.section, {action.name, action.help, action.section}))
             drawAction(with, action, false);
     endRows();
+    ImGui::PushID("passes");  // its fields may have been found, too
     if (finder.finds("passes", {"passes", "times", "memory"}))
         drawPasses(with);
     else
         endPassPreview(with.panel);
+    ImGui::PopID();
     with.controls.setGroup("");
     if (!finder.hasFound()) ImGui::TextDisabled("nothing is called that");
 }

@@ -57,7 +57,7 @@ void drawNotes(const Drawing& with) {
     const std::vector<std::string>& notes = with.facts.notes;
     ImGui::PushStyleColor(ImGuiCol_Text, accentsOf(with.panel.memory.dark).quiet);
     for (size_t i = 0; i < std::min(notes.size(), mostNotes); ++i) ImGui::TextWrapped("%s", notes[i].c_str());
-    if (notes.size() > mostNotes) ImGui::TextWrapped("and %zu more notes", notes.size() - mostNotes);
+    if (notes.size() > mostNotes) ImGui::TextWrapped("and %zu more", notes.size() - mostNotes);
     ImGui::PopStyleColor();
     if (!notes.empty()) with.controls.note("notes", notes.front());
 }

@@ -32,6 +32,19 @@ bool drawCard(const Drawing& with, const std::string& name, const Thumbnails::Pl
     return clicked;
 }
 
+/// Scenes without a picture: all of them, if the program was copied without its pictures.
+void drawOthers(const Drawing& with, const Thumbnails& thumbnails) {
+    for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
+        if (thumbnails.places().contains(info.name)) continue;
+        if (with.controls.button(info.name.c_str())) askToOpen(with, "builtin:" + info.name);
+        if (ImGui::IsItemHovered()) explain(info.help);
+        ImGui::SameLine();
+        const float width = ImGui::GetContentRegionAvail().x;
+        if (width < 8.0f * ImGui::GetFontSize()) ImGui::NewLine();
+    }
+    ImGui::NewLine();
+}
+
 void drawScenes(const Drawing& with, const Thumbnails& thumbnails) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float gap = 2.0f * style.ItemSpacing.x, whole = ImGui::GetContentRegionAvail().x;
@@ -43,16 +56,13 @@ void drawScenes(const Drawing& with, const Thumbnails& thumbnails) {
     int column = 0;
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
         const auto found = thumbnails.places().find(info.name);
-        if (found == thumbnails.places().end()) {  // the program was copied without its pictures
-            if (with.controls.button(info.name.c_str())) askToOpen(with, "builtin:" + info.name);
-            if (ImGui::IsItemHovered()) explain(info.help);
-            continue;
-        }
+        if (found == thumbnails.places().end()) continue;
         if (column > 0) ImGui::SameLine(0.0f, gap);
         if (drawCard(with, info.name, found->second, width)) askToOpen(with, "builtin:" + info.name);
         if (ImGui::IsItemHovered()) explain(info.help);
         column = (column + 1) % columns;
     }
+    drawOthers(with, thumbnails);
     with.controls.setGroup("");
 }
 

@@ -103,8 +103,8 @@ Scene ObjLoader::run() {
     scene_.files = files_.used();
     if (repaired_ > 0) log::warn("{}: {} normals repaired", files_.sceneFile().string(), repaired_);
     if (notDrawn_ > 0)
-        log::warn("{}: {} statements of points, lines, curves and surfaces are not drawn",
-                  files_.sceneFile().string(), notDrawn_);
+        log::warn("{}: points, lines, curves and surfaces are not drawn: {}", files_.sceneFile().string(),
+                  notDrawn_);
     return std::move(scene_);
 }
 

@@ -54,7 +54,7 @@ TEST_F(ObjTest, ReadsFacesWithAllKindsOfCorners) {
 TEST_F(ObjTest, SharesVerticesAndSkipsWhatItDoesNotDraw) {
     put(folder / "scene.obj", corners + "vp 1 2\ns 1\nl 1 2 3\np 1\nf 1 2 3 # comment\nf 1 3 \\\n 4\n");
     const Scene scene =
-        loadWarned(folder / "scene.obj", "2 statements of points, lines, curves and surfaces are not drawn");
+        loadWarned(folder / "scene.obj", "points, lines, curves and surfaces are not drawn: 2");
     EXPECT_EQ(scene.meshes.at(0).positions.size(), 4u);
     EXPECT_THAT(scene.meshes[0].indices, testing::ElementsAre(0, 1, 2, 0, 2, 3));
     EXPECT_TRUE(scene.meshes[0].normals.empty());

@@ -9,6 +9,7 @@ namespace {
 
 using Words = std::span<const uint32_t>;
 
+constexpr uint32_t magic = 0x07230203;
 constexpr size_t headerWords = 5, boundWord = 3;
 
 // SPIR-V specification, chapter 3.
@@ -47,13 +48,34 @@ Op opOf(Words instruction) {
     return static_cast<Op>(instruction[0] & 0xFFFFu);
 }
 
-/// The module's instructions; none if it is damaged.
+/// Words of an instruction that we read.
+size_t leastWords(Op op) {
+    switch (op) {
+        case OpTypeBool:
+            return 2;
+        case OpEntryPoint:
+        case OpTypeInt:
+        case OpTypeVector:
+        case OpTypePointer:
+        case OpVariable:
+        case OpLoad:
+        case OpAccessChain:
+        case OpInBoundsAccessChain:
+            return 4;
+        default:
+            return 1;
+    }
+}
+
+/// The module's instructions; none if it is damaged. What is read of an instruction is there.
 std::vector<Words> instructionsOf(Words words) {
     std::vector<Words> all;
+    if (words.empty() || words[0] != magic) return {};
     for (size_t at = headerWords; at < words.size(); at += all.back().size()) {
         const size_t length = words[at] >> 16;
         if (length == 0 || length > words.size() - at) return {};
         all.push_back(words.subspan(at, length));
+        if (length < leastWords(opOf(all.back()))) return {};
     }
     return all;
 }
