@@ -9,7 +9,7 @@
 #include "shader_list.h"
 
 #if LIMPID_HAVE_SPIRV_TOOLS_OPT
-#include <spirv-tools/libspirv.hpp>
+#include "tests/gpu/spirv_validator.h"
 #endif
 
 namespace limpid::test {
@@ -60,16 +60,10 @@ TEST(DynamicParams, WhatIsDamagedStays) {
 
 #if LIMPID_HAVE_SPIRV_TOOLS_OPT
 TEST(DynamicParams, AllShadersStayValid) {
-    spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
-    std::string fault;
-    tools.SetMessageConsumer(
-        [&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { fault = text; });
-    spvtools::ValidatorOptions options;
-    options.SetScalarBlockLayout(true);
+    SpirvValidator validator;
     for (const shaders::Listed& listed : shaders::listed()) {
         const Words result = gpu::withDynamicParams(listed.code->words);
-        EXPECT_TRUE(tools.Validate(result.data(), result.size(), options))
-            << listed.code->name << ": " << fault;
+        EXPECT_TRUE(validator.accepts(result)) << listed.code->name << ": " << validator.fault();
     }
 }
 #endif

@@ -10,7 +10,7 @@
 #include "tests/gpu/render_fixture.h"
 
 #if LIMPID_HAVE_SPIRV_TOOLS_OPT
-#include <spirv-tools/libspirv.hpp>
+#include "tests/gpu/spirv_validator.h"
 #endif
 
 namespace limpid::test {
@@ -50,12 +50,7 @@ class SpecialiseTest : public GpuTest {
 
 #if LIMPID_HAVE_SPIRV_TOOLS_OPT
 TEST_F(SpecialiseTest, AllShadersStayValid) {
-    spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
-    std::string fault;
-    tools.SetMessageConsumer(
-        [&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { fault = text; });
-    spvtools::ValidatorOptions options;
-    options.SetScalarBlockLayout(true);
+    SpirvValidator validator;
     for (const shaders::Listed& listed : shaders::listed()) {
         const std::span<const uint32_t> words = listed.code->words;
         const std::vector<uint32_t> switches = switchesOf(words);
@@ -66,12 +61,12 @@ TEST_F(SpecialiseTest, AllShadersStayValid) {
             for (const uint32_t id : switches) constants.emplace_back(id, on);
             const std::vector<uint32_t> result = gpu::specialiser()(words, constants);
             sizes[on] = result.size();
-            EXPECT_TRUE(tools.Validate(result.data(), result.size(), options))
-                << listed.code->name << ", all switches " << on << ": " << fault;
+            EXPECT_TRUE(validator.accepts(result))
+                << listed.code->name << ", all switches " << on << ": " << validator.fault();
             EXPECT_TRUE(switchesOf(result).empty()) << listed.code->name;
             const std::vector<uint32_t> dynamic = gpu::withDynamicParams(result);
-            EXPECT_TRUE(tools.Validate(dynamic.data(), dynamic.size(), options))
-                << listed.code->name << ", as CPUs get it: " << fault;
+            EXPECT_TRUE(validator.accepts(dynamic))
+                << listed.code->name << ", as CPUs get it: " << validator.fault();
         }
         EXPECT_LT(std::min(sizes[0], sizes[1]), words.size()) << listed.code->name;
     }

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
-#include <utility>
 
 #include "image/tone_curve.h"
 #include "renderer/method/parameters.h"
