@@ -12,9 +12,6 @@
 namespace limpid::scene {
 namespace {
 
-/// Maximum triangles per leaf: larger leaves cost more tests but fewer nodes (measured in
-/// docs/benchmarks.md).
-constexpr uint32_t maxTrianglesPerLeaf = 4;
 /// A mesh whose copies have at most this many triangles in total is copied into the static tree instead of
 /// instanced, since one tree is traversed faster than two levels.
 constexpr size_t mergeLimit = 4096;
@@ -65,7 +62,7 @@ class GeometryPacker {
             data_.features.twoLevel = true;
             packTwoLevels();
         } else {
-            const Tree tree = appendTree(staticBoxes_, staticTriangles_);
+            const Tree tree = appendTree(static_);
             data_.placements.push_back(placementOf(tree.number, mat4(1.0f)));
             data_.params.rootNode = tree.root;
             data_.stackSize = tree.stackSize + 1;
@@ -77,9 +74,13 @@ class GeometryPacker {
     }
 
   private:
-    struct LeafTriangle {
-        vec3 v[3];
+    struct TriangleRecord {
         uint32_t primitive, instance, shadingTriangle;
+    };
+    /// The triangles of one tree.
+    struct Triangles {
+        std::vector<Corners> corners;
+        std::vector<TriangleRecord> records;
     };
     struct Tree {
         uint32_t root, stackSize;
@@ -131,7 +132,7 @@ class GeometryPacker {
             firstTriangle = packShading(mesh, transform, static_cast<uint32_t>(instance.material));
             for (size_t t = 0; t < mesh.triangleCount(); ++t) {
                 addTriangle(mesh, t, transform, static_cast<uint32_t>(t) | alphaFlag(mesh, instance, t),
-                            index, firstTriangle + static_cast<uint32_t>(t), staticBoxes_, staticTriangles_);
+                            index, firstTriangle + static_cast<uint32_t>(t), static_);
             }
         } else if (firstTriangle == layout::NONE) {
             firstTriangle = meshFirstTriangle_[meshIndex] = packShading(mesh, Transform(mat4(1.0f)), 0);
@@ -150,16 +151,11 @@ class GeometryPacker {
     }
 
     void addTriangle(const Mesh& mesh, size_t triangle, const Transform& transform, uint32_t primitive,
-                     uint32_t instance, uint32_t shadingTriangle, std::vector<Aabb>& boxes,
-                     std::vector<LeafTriangle>& triangles) {
-        LeafTriangle leaf{{}, primitive, instance, shadingTriangle};
-        Aabb box;
-        for (size_t corner = 0; corner < 3; ++corner) {
-            leaf.v[corner] = transform.point(mesh.positions[mesh.indices[3 * triangle + corner]]);
-            box.grow(leaf.v[corner]);
-        }
-        boxes.push_back(box);
-        triangles.push_back(leaf);
+                     uint32_t instance, uint32_t shadingTriangle, Triangles& triangles) {
+        Corners& corners = triangles.corners.emplace_back();
+        for (size_t corner = 0; corner < 3; ++corner)
+            corners[corner] = transform.point(mesh.positions[mesh.indices[3 * triangle + corner]]);
+        triangles.records.push_back({primitive, instance, shadingTriangle});
     }
 
     /// Appends transformed vertices and shading triangles; returns the first triangle's index.
@@ -195,30 +191,38 @@ class GeometryPacker {
     }
 
     /// Builds a tree and appends it to the node and triangle buffers.
-    Tree appendTree(const std::vector<Aabb>& boxes, const std::vector<LeafTriangle>& triangles,
-                    bool moves = false) {
-        const Bvh bvh = buildBvh(boxes, maxTrianglesPerLeaf, maxSahDepth, progressOf(boxes.size()));
+    Tree appendTree(const Triangles& triangles, bool moves = false) {
+        const std::vector<bool> isOpaque = opaqueOnes(triangles);
+        const std::vector<bool> divisible = moves ? std::vector<bool>(isOpaque.size()) : isOpaque;
+        const Bvh bvh = buildTriangleBvh(triangles.corners, divisible, progressOf(isOpaque.size()));
         const auto firstTriangle =
             static_cast<uint32_t>(data_.bvhTriangles.size() / layout::BVH_TRIANGLE_TEXELS);
-        if (firstTriangle + triangles.size() > BvhRef::maxIndex) {
+        if (firstTriangle + bvh.order.size() > BvhRef::maxIndex) {
             throw Error(fmt::format("the scene has more than {} triangles", BvhRef::maxIndex));
         }
         const uint32_t root = appendNodes(bvh.nodes, [&](uint32_t child, uint32_t firstNode) {
             return child + (BvhRef::isLeaf(child) ? firstTriangle : firstNode);
         });
         data_.bvhTriangles.reserve(data_.bvhTriangles.size() +
-                                   triangles.size() * layout::BVH_TRIANGLE_TEXELS);
+                                   bvh.order.size() * layout::BVH_TRIANGLE_TEXELS);
         for (const uint32_t index : bvh.order) {
-            const LeafTriangle& t = triangles[index];
-            data_.bvhTriangles.emplace_back(t.v[0], std::bit_cast<float>(t.primitive));
-            data_.bvhTriangles.emplace_back(t.v[1], std::bit_cast<float>(t.instance));
-            data_.bvhTriangles.emplace_back(t.v[2], std::bit_cast<float>(t.shadingTriangle));
+            const Corners& corners = triangles.corners[index];
+            const TriangleRecord& record = triangles.records[index];
+            data_.bvhTriangles.emplace_back(corners[0], std::bit_cast<float>(record.primitive));
+            data_.bvhTriangles.emplace_back(corners[1], std::bit_cast<float>(record.instance));
+            data_.bvhTriangles.emplace_back(corners[2], std::bit_cast<float>(record.shadingTriangle));
         }
-        const bool opaque = std::none_of(triangles.begin(), triangles.end(), [](const LeafTriangle& t) {
-            return (t.primitive & layout::BVH_TRIANGLE_ALPHA) != 0;
-        });
-        data_.trees.push_back({firstTriangle, static_cast<uint32_t>(triangles.size()), opaque, moves});
+        const bool opaque = std::find(isOpaque.begin(), isOpaque.end(), false) == isOpaque.end();
+        data_.trees.push_back({firstTriangle, static_cast<uint32_t>(bvh.order.size()), opaque, moves});
         return {root, bvh.stackSize, bvh.bounds, static_cast<uint32_t>(data_.trees.size() - 1)};
+    }
+
+    /// By triangle. Others are not split: each part would decide at random for itself whether a ray passes.
+    static std::vector<bool> opaqueOnes(const Triangles& triangles) {
+        std::vector<bool> opaque(triangles.records.size());
+        for (size_t i = 0; i < opaque.size(); ++i)
+            opaque[i] = (triangles.records[i].primitive & layout::BVH_TRIANGLE_ALPHA) == 0;
+        return opaque;
     }
 
     /// For the next tree. Meshes that are copied into one tree count more than once, so the shares are rough.
@@ -252,8 +256,8 @@ class GeometryPacker {
     /// Builds the static tree, a tree per instanced mesh, and a top-level tree over all instances.
     void packTwoLevels() {
         packPreviousInstances();
-        if (!staticBoxes_.empty()) {
-            const Tree tree = appendTree(staticBoxes_, staticTriangles_);
+        if (!static_.corners.empty()) {
+            const Tree tree = appendTree(static_);
             still_.push_back({addRecord(tree, mat4(1.0f), layout::NONE), tree.bounds});
         }
         packMeshInstances();
@@ -303,13 +307,12 @@ class GeometryPacker {
             const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
             const uint32_t firstTriangle =
                 data_.instances[size_t{deforming.instance} * layout::INSTANCE_TEXELS + 3].z;
-            std::vector<Aabb> boxes;
-            std::vector<LeafTriangle> triangles;
+            Triangles triangles;
             for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
                 addTriangle(mesh, t, Transform(mat4(1.0f)), t | alphaFlag(mesh, instance, t), layout::NONE,
-                            firstTriangle + t, boxes, triangles);
+                            firstTriangle + t, triangles);
             }
-            const Tree tree = appendTree(boxes, triangles, true);
+            const Tree tree = appendTree(triangles, true);
             deforming.leaf = static_cast<uint32_t>(motion.leaves.size());
             const uint32_t record = addRecord(tree, instance.transform, deforming.instance);
             motion.leaves.push_back({deforming.instance, record, tree.root, tree.number, tree.bounds});
@@ -345,17 +348,16 @@ class GeometryPacker {
 
     Tree appendMeshTree(size_t meshIndex) {
         const Mesh& mesh = scene_.meshes[meshIndex];
-        std::vector<Aabb> boxes;
-        std::vector<LeafTriangle> triangles;
+        Triangles triangles;
         for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
             uint32_t flag = 0;
             for (const Instance& instance : scene_.instances) {
                 if (static_cast<size_t>(instance.mesh) == meshIndex) flag |= alphaFlag(mesh, instance, t);
             }
             addTriangle(mesh, t, Transform(mat4(1.0f)), t | flag, layout::NONE,
-                        meshFirstTriangle_[meshIndex] + t, boxes, triangles);
+                        meshFirstTriangle_[meshIndex] + t, triangles);
         }
-        return appendTree(boxes, triangles);
+        return appendTree(triangles);
     }
 
     const Scene& scene_;
@@ -367,8 +369,7 @@ class GeometryPacker {
     uint32_t vertexCount_ = 0;
     uint32_t deepest_ = 0;  ///< stack entries of the deepest tree below the top level
     std::vector<uint32_t> meshFirstTriangle_;
-    std::vector<Aabb> staticBoxes_;
-    std::vector<LeafTriangle> staticTriangles_;
+    Triangles static_;  ///< of all meshes that do not move and are placed once
     Aabb bounds_;
 };
 

@@ -1,40 +1,21 @@
-// Bounding volume hierarchies: a binned SAH build on all cores, collapsed to four children a node and
-// quantised.
+// Bounding volume hierarchies: a binary tree, collapsed to four children a node and quantised.
 //
-// Build: I. Wald, "On fast construction of SAH-based bounding volume hierarchies", IEEE RT 2007.
-// Quantised wide nodes: H. Ylitie, T. Karras, S. Laine, "Efficient incoherent ray traversal on GPUs through
-// compressed wide BVHs", HPG 2017 (theirs are 8-wide; four fit the 64 bytes of a cache line without their
-// packing).
+// Collapsing, and quantised nodes: H. Ylitie, T. Karras, S. Laine, "Efficient incoherent ray traversal on
+// GPUs through compressed wide BVHs", HPG 2017 (theirs are 8-wide; four fit the 64 bytes of a cache line
+// without their packing).
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "base/math.h"
 #include "base/progress.h"
+#include "scene/device/trees/aabb.h"
+#include "scene/device/trees/binary_tree.h"
 
 namespace limpid::scene {
-
-struct Aabb {
-    vec3 lower{std::numeric_limits<float>::max()};
-    vec3 upper{std::numeric_limits<float>::lowest()};
-
-    void grow(const vec3& point) {
-        lower = glm::min(lower, point);
-        upper = glm::max(upper, point);
-    }
-    void grow(const Aabb& other) {
-        lower = glm::min(lower, other.lower);
-        upper = glm::max(upper, other.upper);
-    }
-    bool empty() const { return lower.x > upper.x; }
-    vec3 center() const { return 0.5f * lower + 0.5f * upper; }
-    vec3 size() const { return upper - lower; }
-    float halfArea() const;  ///< 0 if empty
-};
 
 /// A reference to a node or to a range of primitives, in the format that shaders read
 /// (shaders/trace/trace_compute.glsl).
@@ -75,14 +56,17 @@ struct Bvh {
                              ///< children
 };
 
-/// Below this depth splits halve the number of primitives, so that no tree is deeper than 48 + log2(count).
-inline constexpr uint32_t maxSahDepth = 48;
+/// Builds a BVH over one box per primitive, on all cores. `maxLeafSize` is 1 to BvhRef::maxLeafSize.
+/// `sahDepth` 0 makes the shallowest tree. Throws Error if there are more primitives than a BvhRef can
+/// address. Without primitives, returns one node that no ray hits.
+Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth = maxSahDepth);
 
-/// Builds a BVH over one box per primitive. `maxLeafSize` is 1 to BvhRef::maxLeafSize. `sahDepth` 0 makes the
-/// shallowest tree. Throws Error if there are more primitives than a BvhRef can address. Without primitives,
-/// returns one node that no ray hits. Throws Cancelled as `progress` does.
-Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth = maxSahDepth,
-             const Progress& progress = {});
+/// The same over triangles, with up to four in a leaf. Takes longer, and rays are faster: triangles are split
+/// where `divisible` (by triangle) allows it, so that `order` may have one of them more than once (but no
+/// leaf has), and nodes are moved (reinsertion.h). Both is done less in trees of more than a million
+/// triangles. Throws Cancelled as `progress` does.
+Bvh buildTriangleBvh(std::span<const Corners> triangles, const std::vector<bool>& divisible,
+                     const Progress& progress = {});
 
 /// A child of a node being built.
 struct BvhChild {

@@ -1,0 +1,348 @@
+#include "scene/device/trees/binary_tree.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+namespace limpid::scene {
+namespace {
+
+constexpr uint32_t binCount = 16;
+constexpr uint32_t parallelThreshold = 4096;
+/// Splits of triangles are tried where the children overlap by more than this share of the root's area,
+constexpr float leastOverlap = 1e-3f;
+/// and used where they cost less than this share of the best split without them.
+constexpr float mostOfCost = 0.9f;
+
+struct Bin {
+    Aabb bounds;
+    uint32_t first = 0;  ///< number of references that begin in this bin
+    uint32_t last = 0;   ///< and that end here
+};
+
+using Bins = std::array<Bin, binCount>;
+
+/// Equal intervals of an axis.
+struct Axis {
+    int axis;
+    float low, scale;
+
+    Axis(int number, float from, float to)
+        : axis(number), low(from), scale(static_cast<float>(binCount) * 0.9999f / (to - from)) {}
+
+    bool usable(float to) const { return to > low && std::isfinite(scale); }
+    uint32_t binOf(float at) const {
+        return std::min(static_cast<uint32_t>(std::max((at - low) * scale, 0.0f)), binCount - 1);
+    }
+    /// Where a bin begins.
+    float planeBefore(uint32_t bin) const { return low + static_cast<float>(bin) / scale; }
+};
+
+struct Split {
+    int axis = -1;
+    uint32_t bin = 0;  ///< what ends in this bin or lower ones goes left
+    float cost = std::numeric_limits<float>::max();
+    uint32_t left = 0, right = 0;  ///< number of references
+    Aabb leftBounds, rightBounds;
+};
+
+/// Keeps the best split between two of the bins.
+void chooseSplit(const Bins& bins, int axis, Split& best) {
+    std::array<Bin, binCount> after;  // all bins from this one on
+    Bin right;
+    for (uint32_t i = binCount - 1; i > 0; --i) {
+        right.bounds.grow(bins[i].bounds);
+        right.last += bins[i].last;
+        after[i] = right;
+    }
+    Bin left;
+    for (uint32_t i = 0; i + 1 < binCount; ++i) {
+        left.bounds.grow(bins[i].bounds);
+        left.first += bins[i].first;
+        const Bin& other = after[i + 1];
+        if (left.first == 0 || other.last == 0) continue;
+        const float cost = left.bounds.halfArea() * static_cast<float>(left.first) +
+                           other.bounds.halfArea() * static_cast<float>(other.last);
+        if (cost < best.cost) best = {axis, i, cost, left.first, other.last, left.bounds, other.bounds};
+    }
+}
+
+/// The bins of references, which `add` adds one by one. Threads take so many each.
+template <typename Add>
+Bins fillBins(std::span<const Reference> references, size_t grain, const Add& add) {
+    const auto fill = [&](const tbb::blocked_range<size_t>& range, Bins bins) {
+        for (size_t i = range.begin(); i < range.end(); ++i) add(references[i], bins);
+        return bins;
+    };
+    const tbb::blocked_range<size_t> all(0, references.size(), grain);
+    if (references.size() <= 2 * grain) return fill(all, Bins{});
+    return tbb::parallel_reduce(all, Bins{}, fill, [](Bins a, const Bins& b) {
+        for (uint32_t i = 0; i < binCount; ++i) {
+            a[i].bounds.grow(b[i].bounds);
+            a[i].first += b[i].first;
+            a[i].last += b[i].last;
+        }
+        return a;
+    });
+}
+
+class Builder {
+  public:
+    Builder(std::vector<Reference> references, uint32_t sahDepth, const Splits& splits,
+            const Progress& progress)
+        : references_(std::move(references)), splits_(splits), sahDepth_(sahDepth), progress_(progress) {
+        const auto count = static_cast<uint32_t>(references_.size());
+        references_.resize(count + splits.most);
+        nodes_.resize(2 * references_.size() - 1);
+        build(0, 1, {0, count, splits.most}, 0);
+        closeGaps();
+    }
+
+    BinaryTree take() { return std::move(nodes_); }
+
+  private:
+    /// References, and room for more behind them.
+    struct Range {
+        uint32_t first, count, room;
+    };
+
+    std::span<Reference> in(const Range& range) { return {references_.data() + range.first, range.count}; }
+    std::span<const Reference> in(const Range& range) const {
+        return {references_.data() + range.first, range.count};
+    }
+
+    /// Nodes below this one are numbered from `children` on, with gaps where room for references was not
+    /// used. So their numbers do not depend on the threads.
+    void build(uint32_t index, uint32_t children, const Range& range, uint32_t depth) {
+        BinaryNode& node = nodes_[index];
+        if (range.count == 1) {
+            node.primitive = references_[range.first].primitive;
+            node.bounds = references_[range.first].bounds;
+            return;
+        }
+        for (const Reference& reference : in(range)) node.bounds.grow(reference.bounds);
+        if (index == 0) leastOverlap_ = leastOverlap * node.bounds.halfArea();
+        const auto [left, right] = partition(node.bounds, range, depth);
+        node.child = children;
+        const uint32_t afterLeft = children + 2 * (left.count + left.room);
+        const auto buildLeft = [&] { build(children, children + 2, left, depth + 1); };
+        const auto buildRight = [&] { build(children + 1, afterLeft, right, depth + 1); };
+        if (range.count > parallelThreshold) {
+            tbb::parallel_invoke(buildLeft, buildRight);
+            if (left.count <= parallelThreshold) report(left.count);
+            if (right.count <= parallelThreshold) report(right.count);
+        } else {
+            buildLeft();
+            buildRight();
+        }
+    }
+
+    void closeGaps() {
+        uint32_t used = 1;
+        std::vector<uint32_t> open{0};
+        while (!open.empty()) {
+            BinaryNode& node = nodes_[open.back()];
+            open.pop_back();
+            if (node.isLeaf()) continue;
+            std::copy_n(nodes_.begin() + node.child, 2, nodes_.begin() + used);
+            node.child = used;
+            open.insert(open.end(), {used + 1, used});
+            used += 2;
+        }
+        nodes_.resize(used);
+    }
+
+    /// Reports that a small subtree of so many references is done.
+    void report(uint32_t count) {
+        const uint32_t placed = placed_.fetch_add(count, std::memory_order_relaxed) + count;
+        progress_.at(std::min<size_t>(placed, references_.size()), references_.size());
+    }
+
+    struct Halves {
+        Range left, right;
+    };
+
+    Halves partition(const Aabb& bounds, const Range& range, uint32_t depth) {
+        Aabb centers;
+        for (const Reference& reference : in(range)) centers.grow(reference.bounds.center());
+        const Split split = depth < sahDepth_ ? objectSplit(centers, range) : Split{};
+        if (split.axis < 0) return halved(centers, range);
+        if (range.room > 0) {
+            const Split spatial = spatialSplit(bounds, split, range);
+            if (spatial.cost < mostOfCost * split.cost) return splitAt(spatial, bounds, range);
+        }
+        const Axis axis(split.axis, centers.lower[split.axis], centers.upper[split.axis]);
+        const std::span<Reference> all = in(range);
+        const auto middle = std::partition(all.begin(), all.end(), [&](const Reference& reference) {
+            return axis.binOf(reference.bounds.center()[split.axis]) <= split.bin;
+        });
+        return divided(range, static_cast<uint32_t>(middle - all.begin()));
+    }
+
+    Halves halved(const Aabb& centers, const Range& range) {
+        const vec3 size = centers.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const std::span<Reference> all = in(range);
+        std::nth_element(all.begin(), all.begin() + range.count / 2, all.end(),
+                         [&](const Reference& a, const Reference& b) {
+                             const float ca = a.bounds.center()[axis], cb = b.bounds.center()[axis];
+                             return ca != cb ? ca < cb : a.primitive < b.primitive;
+                         });
+        return divided(range, range.count / 2);
+    }
+
+    /// The first `left` references, and the others. Room is shared in proportion; that of the left half comes
+    /// between.
+    Halves divided(const Range& range, uint32_t left) {
+        const uint32_t right = range.count - left;
+        const auto room = static_cast<uint32_t>(uint64_t{range.room} * left / range.count);
+        const auto from = references_.begin() + range.first + left;
+        std::move_backward(from, from + right, from + right + room);
+        return {{range.first, left, room}, {range.first + left + room, right, range.room - room}};
+    }
+
+    /// Without an axis where all centers are the same.
+    Split objectSplit(const Aabb& centers, const Range& range) const {
+        Split best;
+        for (int number = 0; number < 3; ++number) {
+            const Axis axis(number, centers.lower[number], centers.upper[number]);
+            if (!axis.usable(centers.upper[number])) continue;
+            const auto add = [&](const Reference& reference, Bins& bins) {
+                Bin& bin = bins[axis.binOf(reference.bounds.center()[number])];
+                bin.bounds.grow(reference.bounds);
+                ++bin.first;
+                ++bin.last;
+            };
+            chooseSplit(fillBins(in(range), 1u << 16, add), number, best);
+        }
+        return best;
+    }
+
+    bool isDivisible(const Reference& reference) const { return splits_.divisible[reference.primitive]; }
+
+    /// The part of a reference below (or above) a plane.
+    Reference partOf(const Reference& reference, int axis, float plane, bool below) const {
+        Reference part = reference;
+        (below ? part.bounds.upper : part.bounds.lower)[axis] = plane;
+        part.bounds = clipped(splits_.triangles[part.primitive], part.bounds);
+        return part;
+    }
+
+    /// Adds the parts of a reference to all bins that it crosses.
+    void addParts(const Axis& axis, Reference reference, Bins& bins) const {
+        const uint32_t first = axis.binOf(reference.bounds.lower[axis.axis]);
+        const uint32_t last = axis.binOf(reference.bounds.upper[axis.axis]);
+        if (!isDivisible(reference)) {
+            Bin& bin = bins[axis.binOf(reference.bounds.center()[axis.axis])];
+            bin.bounds.grow(reference.bounds);
+            ++bin.first;
+            ++bin.last;
+            return;
+        }
+        ++bins[first].first;
+        ++bins[last].last;
+        for (uint32_t bin = first; bin < last; ++bin) {
+            const float plane = axis.planeBefore(bin + 1);
+            if (crosses(reference, axis.axis, plane)) {
+                bins[bin].bounds.grow(partOf(reference, axis.axis, plane, true).bounds);
+                reference = partOf(reference, axis.axis, plane, false);
+            }
+        }
+        bins[last].bounds.grow(reference.bounds);
+    }
+
+    static bool crosses(const Reference& reference, int axis, float plane) {
+        return reference.bounds.lower[axis] < plane && reference.bounds.upper[axis] > plane;
+    }
+
+    /// `other` is the best split without dividing triangles.
+    Split spatialSplit(const Aabb& bounds, const Split& other, const Range& range) const {
+        const Aabb overlap{glm::max(other.leftBounds.lower, other.rightBounds.lower),
+                           glm::min(other.leftBounds.upper, other.rightBounds.upper)};
+        const vec3 size = overlap.size();
+        Split best;
+        if (glm::any(glm::lessThan(size, vec3(0.0f))) || !(overlap.halfArea() > leastOverlap_)) return best;
+        for (int number = 0; number < 3; ++number) {
+            const Axis axis(number, bounds.lower[number], bounds.upper[number]);
+            if (!axis.usable(bounds.upper[number])) continue;
+            const auto add = [&](const Reference& reference, Bins& bins) { addParts(axis, reference, bins); };
+            chooseSplit(fillBins(in(range), 1u << 11, add), number, best);
+        }
+        if (best.axis >= 0 && best.left + best.right - range.count > range.room) return {};
+        return best;
+    }
+
+    /// Whether all of a reference goes to one side, since that is cheaper than two parts.
+    enum class Side { Left, Right, Both };
+    static Side sideOf(const Reference& reference, const Split& split) {
+        const auto grown = [&](Aabb box) {
+            box.grow(reference.bounds);
+            return box.halfArea();
+        };
+        const auto left = static_cast<float>(split.left), right = static_cast<float>(split.right);
+        const float areaLeft = split.leftBounds.halfArea(), areaRight = split.rightBounds.halfArea();
+        const float both = areaLeft * left + areaRight * right;
+        const float onlyLeft = grown(split.leftBounds) * left + areaRight * (right - 1.0f);
+        const float onlyRight = areaLeft * (left - 1.0f) + grown(split.rightBounds) * right;
+        if (both <= std::min(onlyLeft, onlyRight)) return Side::Both;
+        return onlyLeft <= onlyRight ? Side::Left : Side::Right;
+    }
+
+    Halves splitAt(const Split& split, const Aabb& bounds, const Range& range) {
+        const Axis axis(split.axis, bounds.lower[split.axis], bounds.upper[split.axis]);
+        const float plane = axis.planeBefore(split.bin + 1);
+        uint32_t added = 0;
+        const auto goesLeft = [&](Reference& reference) {
+            if (!isDivisible(reference) || !crosses(reference, split.axis, plane))
+                return axis.binOf(reference.bounds.center()[split.axis]) <= split.bin;
+            const Side side = added < range.room ? sideOf(reference, split) : Side::Left;
+            if (side != Side::Both) return side == Side::Left;
+            references_[range.first + range.count + added++] = partOf(reference, split.axis, plane, false);
+            reference = partOf(reference, split.axis, plane, true);
+            return true;
+        };
+        const std::span<Reference> all = in(range);
+        // In order, and each once: std::partition may not change what it visits.
+        std::vector<Reference> right;
+        auto left = all.begin();
+        for (Reference& reference : all) {
+            if (goesLeft(reference))
+                *left++ = reference;
+            else
+                right.push_back(reference);
+        }
+        std::copy(right.begin(), right.end(), left);
+        const auto lefts = static_cast<uint32_t>(left - all.begin());
+        const Range longer{range.first, range.count + added, range.room - added};
+        if (lefts == 0 || lefts == longer.count) return halvedAgain(longer);
+        return divided(longer, lefts);
+    }
+
+    Halves halvedAgain(const Range& range) {
+        Aabb centers;
+        for (const Reference& reference : in(range)) centers.grow(reference.bounds.center());
+        return halved(centers, range);
+    }
+
+    std::vector<Reference> references_;
+    const Splits& splits_;
+    uint32_t sahDepth_;
+    float leastOverlap_ = 0.0f;  ///< as an area
+    BinaryTree nodes_;
+    Progress progress_;
+    std::atomic<uint32_t> placed_{0};
+};
+
+}  // namespace
+
+BinaryTree buildBinaryTree(std::vector<Reference> references, uint32_t sahDepth, const Splits& splits,
+                           const Progress& progress) {
+    return Builder(std::move(references), sahDepth, splits, progress).take();
+}
+
+}  // namespace limpid::scene

@@ -1,0 +1,16 @@
+// Boxes of parts of triangles.
+#pragma once
+
+#include <array>
+
+#include "scene/device/trees/aabb.h"
+
+namespace limpid::scene {
+
+using Corners = std::array<vec3, 3>;
+
+/// The box of the part of a triangle that lies within a box. It lies within it, too, and is larger than the
+/// part by no less than the rounding. `box` if rounding leaves nothing.
+Aabb clipped(const Corners& triangle, const Aabb& box);
+
+}  // namespace limpid::scene
