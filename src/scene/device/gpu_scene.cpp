@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <string>
 
 #include "base/error.h"
@@ -9,6 +10,19 @@
 #include "scene/prepare/expanded_nodes.h"
 
 namespace limpid::scene {
+
+namespace {
+
+/// Drivers split triangles themselves, if they do, and would test repeated ones twice. Vulkan ignores a
+/// triangle whose first coordinate is NaN.
+std::vector<vec4> withoutRepeats(const SceneData& data) {
+    std::vector<vec4> triangles = data.bvhTriangles;
+    for (const uint32_t index : data.repeatedTriangles)
+        triangles[size_t{index} * layout::BVH_TRIANGLE_TEXELS].x = std::numeric_limits<float>::quiet_NaN();
+    return triangles;
+}
+
+}  // namespace
 
 GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOptions& options)
     : features_(data.features),
@@ -21,7 +35,10 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOption
             {name, device.createTexelBuffer(std::string("scene/") + name, format, gpu::bytesOf(values))});
     };
     addNodes(device, data);
-    add("bvhTriangles", Format::RGBA32Float, data.bvhTriangles);
+    if (options.tracer == Tracer::Hardware)
+        add("bvhTriangles", Format::RGBA32Float, withoutRepeats(data));
+    else
+        add("bvhTriangles", Format::RGBA32Float, data.bvhTriangles);
     add("bvhInstances", Format::RGBA32Uint, data.bvhInstances);
     add("triangles", Format::RGBA32Uint, data.triangles);
     add("vertices", Format::RGBA32Uint, data.vertices);

@@ -205,7 +205,13 @@ class GeometryPacker {
         });
         data_.bvhTriangles.reserve(data_.bvhTriangles.size() +
                                    bvh.order.size() * layout::BVH_TRIANGLE_TEXELS);
+        std::vector<bool> placed(triangles.corners.size());
         for (const uint32_t index : bvh.order) {
+            if (placed[index]) {
+                data_.repeatedTriangles.push_back(
+                    static_cast<uint32_t>(data_.bvhTriangles.size() / layout::BVH_TRIANGLE_TEXELS));
+            }
+            placed[index] = true;
             const Corners& corners = triangles.corners[index];
             const TriangleRecord& record = triangles.records[index];
             data_.bvhTriangles.emplace_back(corners[0], std::bit_cast<float>(record.primitive));

@@ -40,6 +40,9 @@ struct SceneData {
     /// bvhInstances. A scene of one tree has one placement.
     std::vector<gpu::TriangleTree> trees;
     std::vector<gpu::TreePlacement> placements;
+    /// Of bvhTriangles: those that stand elsewhere, too, since a tree has parts of them in several leaves.
+    /// All but one of each.
+    std::vector<uint32_t> repeatedTriangles;
 
     uint64_t byteCount() const;
 };
