@@ -127,7 +127,8 @@ class Builder {
         }
         for (const Reference& reference : in(range)) node.bounds.grow(reference.bounds);
         if (index == 0) leastOverlap_ = leastOverlap * node.bounds.halfArea();
-        const auto [left, right] = partition(node.bounds, range, depth);
+        const Halves halves = partition(node.bounds, range, depth);
+        const Range &left = halves.left, &right = halves.right;
         node.child = children;
         const uint32_t afterLeft = children + 2 * (left.count + left.room);
         const auto buildLeft = [&] { build(children, children + 2, left, depth + 1); };
