@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <exception>
+#include <memory>
+#include <optional>
 #include <thread>
 
 #include "base/log.h"
@@ -26,14 +28,15 @@ struct Studio::Impl {
     std::atomic<bool> ended = false;
     std::thread thread;
 
-    std::unique_ptr<RenderLoop> makeLoop(const StudioSettings& with) {
-        return std::make_unique<RenderLoop>(device, tracer, load, start, with, mailbox);
+    std::unique_ptr<RenderLoop> makeLoop(const StudioSettings& with,
+                                         const std::optional<SceneLoading::Order>& first) {
+        return std::make_unique<RenderLoop>(device, tracer, load, start, with, first, mailbox);
     }
 
     /// Sets everything up anew, on another device or on the same one if it is available again, as often as it
     /// is lost.
     void work() {
-        auto loop = makeLoop(settings);
+        auto loop = makeLoop(settings, RenderLoop::firstScene(settings));
         for (;;) {
             try {
                 loop->run();
@@ -44,7 +47,8 @@ struct Studio::Impl {
             }
             const RenderLoop::Standing standing = loop->standing();
             loop.reset();
-            loop = makeLoop(standing.settings);
+            loop = makeLoop(standing.settings,
+                            standing.scene ? standing.scene : RenderLoop::firstScene(standing.settings));
             loop->takeOver(standing);
         }
     }

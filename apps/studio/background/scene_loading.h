@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/progress.h"
@@ -37,8 +38,10 @@ class SceneLoading {
         std::vector<int> gone;
     };
 
-    /// `load` outlives this.
-    explicit SceneLoading(const SceneLoader& load) : load_(load) {}
+    /// `load` outlives this. Begins with `first`, if there is one.
+    explicit SceneLoading(const SceneLoader& load, std::optional<Order> first = {}) : load_(load) {
+        if (first) begin(std::move(*first));
+    }
     /// Gives up what is being loaded.
     ~SceneLoading() { cancel(); }
     SceneLoading(const SceneLoading&) = delete;

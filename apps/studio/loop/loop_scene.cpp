@@ -1,6 +1,7 @@
 // The scene and its lights: opening, changing and restarting.
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,10 +13,10 @@
 
 namespace limpid::studio {
 
-/// Begins to load the scene that the studio starts with.
-void RenderLoop::loadFirst() {
-    loading_.begin(
-        {.source = settings_.source, .why = SceneLoading::Why::First, .clip = settings_.animation});
+std::optional<SceneLoading::Order> RenderLoop::firstScene(const StudioSettings& settings) {
+    if (settings.source.scene.empty()) return {};
+    return SceneLoading::Order{
+        .source = settings.source, .why = SceneLoading::Why::First, .clip = settings.animation};
 }
 
 /// What another change is made to, so that none is lost: what is being loaded, or the scene that is shown.

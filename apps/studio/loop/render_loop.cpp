@@ -27,21 +27,21 @@ bool concernsLoading(const Message& message) {
 }  // namespace
 
 RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tracer, const SceneLoader& load,
-                       const CameraStart& start, const StudioSettings& settings, Mailbox& mailbox)
+                       const CameraStart& start, const StudioSettings& settings,
+                       const std::optional<SceneLoading::Order>& first, Mailbox& mailbox)
     : settings_(settings),
       tracer_(tracer),
-      load_(load),
       start_(start),
       mailbox_(mailbox),
       askedDevice_(options.select),
+      loading_(load, first),
       device_(options),
       reload_(settings.shaders),
       main_(device_, reload_.replacements()),
       networks_(device_, settings.weights, settings.loadNetworks),
       comparison_(device_, reload_.replacements(), networks_),
       picker_(device_, reload_.replacements()),
-      resolution_(device_.isCpu()),
-      loading_(load) {
+      resolution_(device_.isCpu()) {
     loadPipelines(device_, pipelineFile(device_));
     state_.viewport = settings.render.extent;
     state_.render = settings.render;
@@ -83,8 +83,11 @@ RenderLoop::Standing RenderLoop::standing() const {
                  .hand = rig_.hand(),
                  .time = playback_.time(),
                  .messages = messages_,
-                 .hasScene = stage_ != nullptr};
-    if (stage_) now.clip = scene::clipChoice(stage_->scene());
+                 .scene = {}};
+    if (!stage_) return now;
+    now.scene = SceneLoading::Order{.source = settings_.source};
+    const std::string clip = scene::clipChoice(stage_->scene());
+    if (!clip.empty()) now.scene->clip = clip;
     return now;
 }
 
@@ -92,10 +95,8 @@ void RenderLoop::takeOver(const Standing& standing) {
     settings_ = standing.settings;
     settings_.loseDeviceAt = 0;
     messages_ = standing.messages;
-    if (!standing.hasScene) return;
-    SceneLoading::Order order{.source = settings_.source};
-    if (!standing.clip.empty()) order.clip = standing.clip;
-    show(loadScene(load_, order, {}));
+    if (!standing.scene) return;
+    show(loading_.take());
     goTo(standing.home);
     state_ = standing.state;
     rig_.hand() = standing.hand;
@@ -106,7 +107,6 @@ void RenderLoop::takeOver(const Standing& standing) {
 }
 
 void RenderLoop::run() {
-    if (!stage_ && !settings_.source.scene.empty()) loadFirst();
     bool rests = false;
     while (!mailbox_.isClosed() && (settings_.quitAfter == 0 || rendered() < settings_.quitAfter)) {
         // The newest messages are for the next frame, which begins when the device has finished the last one.

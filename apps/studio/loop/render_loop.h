@@ -33,9 +33,13 @@ namespace limpid::studio {
 
 class RenderLoop {
   public:
-    /// All but the settings outlive this. Throws as Device does.
+    /// All but the settings and `first` outlive this. `first` is loaded while the device is set up. Throws as
+    /// Device does.
     RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tracer, const SceneLoader& load,
-               const CameraStart& start, const StudioSettings& settings, Mailbox& mailbox);
+               const CameraStart& start, const StudioSettings& settings,
+               const std::optional<SceneLoading::Order>& first, Mailbox& mailbox);
+    /// The scene that the studio starts with, if it starts with one.
+    static std::optional<SceneLoading::Order> firstScene(const StudioSettings& settings);
     /// Until the mailbox is closed, or as many frames were rendered as asked for.
     void run();
     void storePipelines() const { limpid::storePipelines(device_, pipelineFile(device_)); }
@@ -47,17 +51,16 @@ class RenderLoop {
         State state;
         scene::Camera home;
         FlyCamera hand;
-        std::string clip;  ///< argument for chooseClip(); empty: none plays
         double time = 0.0;
         uint64_t messages = 0;
-        bool hasScene = false;
+        std::optional<SceneLoading::Order> scene;  ///< what is shown
     };
     Standing standing() const;
+    /// Of a loop that began with the scene of `standing`.
     void takeOver(const Standing& standing);
 
   private:
     void finish();
-    void loadFirst();
     SceneLoading::Order orderToChange() const;
     void finishLoading();
     void show(LoadedScene scene);
@@ -152,10 +155,10 @@ class RenderLoop {
 
     StudioSettings settings_;
     const TracerChoice& tracer_;
-    const SceneLoader& load_;
     const CameraStart& start_;
     Mailbox& mailbox_;
     std::string askedDevice_;  ///< DeviceOptions::select
+    SceneLoading loading_;     ///< before the device, which takes as long to set up as a small scene to load
     gpu::Device device_;
     std::unique_ptr<Stage> stage_;  ///< null: no scene yet
     CameraRig rig_;
@@ -194,7 +197,6 @@ class RenderLoop {
     bool frameBefore_ = false;
     Clock::time_point messageSince_{};
 
-    SceneLoading loading_;
     std::deque<Message> held_;  ///< messages that wait for the first scene
 
     /// A frame that the device computes.
