@@ -114,7 +114,10 @@ bool RenderLoop::renderWhatIsDue() {
 
 bool RenderLoop::renderNext() {
     const bool wasNew = std::exchange(isNew_, isNew_ && previewsFirst());
-    if (wasNew && !isNew_) flight_.reset(playback_.time());
+    if (wasNew && !isNew_) {
+        publishWaiting();  // the preview: the method's first frame takes longer
+        flight_.reset(playback_.time());
+    }
     if (isNew_) {
         wanted_.pipeline = {Integrator::Preview};
         wanted_.jitter = defaultJitter(wanted_.pipeline);
