@@ -38,14 +38,17 @@ class Progress {
     void at(double share) const {
         if (!work_) return;
         if (work_->cancelled) throw Cancelled();
-        work_->done = from_ + share * (to_ - from_);
+        const double reached = from_ + share * (to_ - from_);
+        double before = work_->done;
+        while (before < reached && !work_->done.compare_exchange_weak(before, reached)) {
+        }
     }
     /// The same after `count` of `all` equal steps; `all` may be 0.
     void at(size_t count, size_t all) const {
         at(all == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(all));
     }
 
-    /// Share of the whole work that was reported last; 0 if nobody watches.
+    /// The largest share of the whole work that was reported; 0 if nobody watches.
     double done() const { return work_ ? work_->done.load() : 0.0; }
     void cancel() const {
         if (work_) work_->cancelled = true;

@@ -1,5 +1,7 @@
 #include "scene/builtin/procedural_textures.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -30,14 +32,18 @@ Texture painted(std::string name, uint32_t width, uint32_t height, bool srgb, co
     texture.width = width;
     texture.height = height;
     texture.srgb = srgb;
-    texture.rgba.reserve(size_t{4} * width * height);
-    for (uint32_t y = 0; y < height; ++y) {
-        for (uint32_t x = 0; x < width; ++x) {
+    texture.rgba.resize(size_t{4} * width * height);
+    tbb::parallel_for(uint32_t{0}, height, [&](uint32_t y) {
+        uint8_t* texel = &texture.rgba[size_t{4} * width * y];
+        for (uint32_t x = 0; x < width; ++x, texel += 4) {
             const vec3 color = paint(vec2((static_cast<float>(x) + 0.5f) / static_cast<float>(width),
                                           (static_cast<float>(y) + 0.5f) / static_cast<float>(height)));
-            texture.rgba.insert(texture.rgba.end(), {toByte(color.r), toByte(color.g), toByte(color.b), 255});
+            texel[0] = toByte(color.r);
+            texel[1] = toByte(color.g);
+            texel[2] = toByte(color.b);
+            texel[3] = 255;
         }
-    }
+    });
     return texture;
 }
 

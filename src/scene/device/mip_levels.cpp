@@ -80,10 +80,11 @@ uint64_t mipTexelCount(const Texture& texture) {
     return sum;
 }
 
-void appendMipLevels(const Texture& texture, std::vector<uint32_t>& result) {
+void writeMipLevels(const Texture& texture, std::span<uint32_t> result) {
     const uint8_t* p = texture.rgba.data();
+    auto out = result.begin();
     for (size_t i = 0; i < size_t{texture.width} * texture.height; ++i, p += 4)
-        result.push_back(uint32_t{p[0]} | uint32_t{p[1]} << 8 | uint32_t{p[2]} << 16 | uint32_t{p[3]} << 24);
+        *out++ = uint32_t{p[0]} | uint32_t{p[1]} << 8 | uint32_t{p[2]} << 16 | uint32_t{p[3]} << 24;
     Level level{texture.width, texture.height, {}};
     for (uint32_t i = 1; i < mipLevelCount(texture); ++i) {
         // The first level is never stored as floats, which would take four times the picture's memory.
@@ -93,16 +94,15 @@ void appendMipLevels(const Texture& texture, std::vector<uint32_t>& result) {
                              return level.texels[size_t{y} * level.width + x];
                          });
         for (const vec4& t : level.texels) {
-            result.push_back(encodeByte(t.r, texture.srgb) | encodeByte(t.g, texture.srgb) << 8 |
-                             encodeByte(t.b, texture.srgb) << 16 | encodeByte(t.a, false) << 24);
+            *out++ = encodeByte(t.r, texture.srgb) | encodeByte(t.g, texture.srgb) << 8 |
+                     encodeByte(t.b, texture.srgb) << 16 | encodeByte(t.a, false) << 24;
         }
     }
 }
 
 std::vector<uint32_t> withMipLevels(const Texture& texture) {
-    std::vector<uint32_t> result;
-    result.reserve(mipTexelCount(texture));
-    appendMipLevels(texture, result);
+    std::vector<uint32_t> result(mipTexelCount(texture));
+    writeMipLevels(texture, result);
     return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scene/model/scene.h"
@@ -17,8 +18,8 @@ uint64_t mipTexelCount(const Texture& texture);
 /// Returns all levels, largest first, as packed RGBA8 (red in the lowest byte), sRGB-encoded if the texture
 /// is. Level k has max(1, width >> k) by max(1, height >> k) texels.
 std::vector<uint32_t> withMipLevels(const Texture& texture);
-/// Like withMipLevels(), but appends to `result`.
-void appendMipLevels(const Texture& texture, std::vector<uint32_t>& result);
+/// Like withMipLevels(), but writes to `result`, which has mipTexelCount() texels.
+void writeMipLevels(const Texture& texture, std::span<uint32_t> result);
 
 /// Returns the linear colour of the texel nearest to (u, v), wrapped according to the sampler.
 vec4 nearestTexel(const Texture& texture, vec2 uv);

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
-#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "base/error.h"
 #include "scene/device/mip_levels.h"
@@ -13,27 +16,33 @@ namespace {
 
 constexpr uint64_t texelsPerBuffer = uint64_t{1} << layout::TEXEL_BUFFER_SHIFT;
 
+/// Where a texture and its mip levels lie.
 struct PlacedTexture {
-    uint32_t firstTexel = 0;
-    uint32_t levels = 1;
+    uint32_t buffer = 0, first = 0;
+
+    uint32_t firstTexel() const { return buffer << layout::TEXEL_BUFFER_SHIFT | first; }
 };
 
-/// Appends the texture with its mip levels to the first texel buffer with enough space. `allTexels`, the
-/// total of all textures, is reserved, because a growing buffer would temporarily exist twice.
-PlacedTexture placeTexture(const Texture& texture, uint64_t allTexels, SceneData& data) {
-    const uint64_t texels = mipTexelCount(texture);
-    for (uint32_t index = 0; index < layout::TEXEL_BUFFERS; ++index) {
-        auto& buffer = data.texels[index];
-        if (buffer.size() + texels > texelsPerBuffer) continue;
-        const auto first = static_cast<uint32_t>(buffer.size());
-        buffer.reserve(std::min(allTexels, texelsPerBuffer));
-        appendMipLevels(texture, buffer);
-        return {index << layout::TEXEL_BUFFER_SHIFT | first, mipLevelCount(texture)};
+/// Places textures in the first texel buffer with enough space.
+class TexturePlaces {
+  public:
+    PlacedTexture place(const Texture& texture) {
+        const uint64_t texels = mipTexelCount(texture);
+        for (uint32_t index = 0; index < layout::TEXEL_BUFFERS; ++index) {
+            uint64_t& used = used_[index];
+            if (used + texels > texelsPerBuffer) continue;
+            used += texels;
+            return {index, static_cast<uint32_t>(used - texels)};
+        }
+        throw Error(fmt::format(
+            "texture '{}' does not fit: all textures together exceed the limit of {} x 2^27 texels",
+            texture.name, layout::TEXEL_BUFFERS));
     }
-    throw Error(
-        fmt::format("texture '{}' does not fit: all textures together exceed the limit of {} x 2^27 texels",
-                    texture.name, layout::TEXEL_BUFFERS));
-}
+    const std::array<uint64_t, layout::TEXEL_BUFFERS>& used() const { return used_; }
+
+  private:
+    std::array<uint64_t, layout::TEXEL_BUFFERS> used_{};  ///< texels
+};
 
 uint32_t samplerBits(const Texture& texture, const TextureRef& ref) {
     const Sampler& s = texture.sampler;
@@ -50,15 +59,11 @@ uint32_t samplerBits(const Texture& texture, const TextureRef& ref) {
 class MaterialPacker {
   public:
     MaterialPacker(const Scene& scene, SceneData& data)
-        : scene_(scene), data_(data), placed_(scene.textures.size()) {
-        for (const Texture& texture : scene.textures) allTexels_ += mipTexelCount(texture);
-    }
+        : scene_(scene), data_(data), placed_(scene.textures.size()) {}
 
     void pack(const Progress& progress) {
-        for (size_t i = 0; i < scene_.materials.size(); ++i) {
-            progress.at(i, scene_.materials.size());
-            packMaterial(scene_.materials[i]);
-        }
+        for (const Material& material : scene_.materials) packMaterial(material);
+        writeTexels(progress);
     }
 
   private:
@@ -67,12 +72,27 @@ class MaterialPacker {
         data_.features.textures = true;
         const auto index = static_cast<size_t>(ref.texture);
         const Texture& texture = scene_.textures[index];
-        if (!placed_[index]) placed_[index] = placeTexture(texture, allTexels_, data_);
+        if (!placed_[index]) placed_[index] = places_.place(texture);
         const auto result = static_cast<uint32_t>(data_.textureRefs.size() / layout::TEXTURE_REF_TEXELS);
-        data_.textureRefs.push_back(bits(ref.rowU, placed_[index]->firstTexel));
+        data_.textureRefs.push_back(bits(ref.rowU, placed_[index]->firstTexel()));
         data_.textureRefs.push_back(bits(ref.rowV, samplerBits(texture, ref)));
-        data_.textureRefs.emplace_back(texture.width, texture.height, placed_[index]->levels, 0);
+        data_.textureRefs.emplace_back(texture.width, texture.height, mipLevelCount(texture), 0);
         return result;
+    }
+
+    /// Each texture's levels are made by one thread.
+    void writeTexels(const Progress& progress) {
+        for (size_t i = 0; i < data_.texels.size(); ++i) data_.texels[i].resize(places_.used()[i]);
+        std::atomic<size_t> done = 0;
+        tbb::parallel_for(size_t{0}, placed_.size(), [&](size_t i) {
+            if (const auto& place = placed_[i]) {
+                const Texture& texture = scene_.textures[i];
+                writeMipLevels(
+                    texture,
+                    std::span(data_.texels[place->buffer]).subspan(place->first, mipTexelCount(texture)));
+            }
+            progress.at(++done, placed_.size());
+        });
     }
 
     static uint32_t flagBits(const Material& m) {
@@ -155,8 +175,8 @@ class MaterialPacker {
 
     const Scene& scene_;
     SceneData& data_;
+    TexturePlaces places_;
     std::vector<std::optional<PlacedTexture>> placed_;
-    uint64_t allTexels_ = 0;
 };
 
 }  // namespace

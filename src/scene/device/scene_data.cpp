@@ -1,5 +1,7 @@
 #include "scene/device/scene_data.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 
 #include "scene/device/pack.h"
@@ -11,6 +13,13 @@ bool hasVertexData(const Scene& scene) {
     return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& mesh) {
         return !mesh.normals.empty() || !mesh.uv0.empty() || !mesh.uv1.empty() || !mesh.colors.empty();
     });
+}
+
+void packMaterialsAndTables(const Scene& scene, SceneData& data, const Progress& progress) {
+    packMaterials(scene, data, progress);
+    if (data.features.specular) fillGgxTable(data.ggxTable);
+    if (data.features.sheen) fillSheenTable(data.ggxTable);
+    if (data.features.roughGlass) fillDielectricTable(data.dielectricTable);
 }
 
 template <typename T>
@@ -43,13 +52,10 @@ uint64_t SceneData::byteCount() const {
 SceneData buildSceneData(const Scene& scene, const Progress& progress, std::optional<bool> hasLightTree) {
     SceneData data;
     data.features.vertexData = hasVertexData(scene);
-    packMaterials(scene, data, progress.part(0.0, 0.3));
-    packGeometry(scene, data, progress.part(0.3, 0.9));
+    tbb::parallel_invoke([&] { packMaterialsAndTables(scene, data, progress.part(0.0, 0.3)); },
+                         [&] { packGeometry(scene, data, progress.part(0.0, 0.9)); });
     progress.at(0.9);
     packLights(scene, data, hasLightTree);
-    if (data.features.specular) fillGgxTable(data.ggxTable);
-    if (data.features.sheen) fillSheenTable(data.ggxTable);
-    if (data.features.roughGlass) fillDielectricTable(data.dielectricTable);
     return data;
 }
 
