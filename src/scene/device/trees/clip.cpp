@@ -14,6 +14,9 @@ Aabb clipped(const Corners& triangle, const Aabb& box) {
         const bool upper = plane % 2 != 0;
         const float at = upper ? box.upper[axis] : box.lower[axis];
         const auto inside = [&](const vec3& p) { return upper ? at - p[axis] : p[axis] - at; };
+        if (std::all_of(polygon.begin(), polygon.begin() + count,
+                        [&](const vec3& p) { return inside(p) >= 0.0f; }))
+            continue;
         size_t kept = 0;
         for (size_t i = 0; i < count && kept + 2 <= cut.size(); ++i) {
             const vec3 &a = polygon[i], &b = polygon[(i + 1) % count];

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 namespace limpid::scene {
 namespace {
@@ -46,10 +47,6 @@ class Reinserter {
     }
 
   private:
-    struct Candidate {
-        float area;
-        uint32_t node;
-    };
     struct Place {
         float gain;  ///< before the node is put at or below this place
         uint32_t node;
@@ -61,17 +58,16 @@ class Reinserter {
     }
 
     std::vector<uint32_t> largest() const {
-        std::vector<Candidate> all;
+        // Numbers that are smaller the larger the box is, since the bits of positive floats grow with them.
+        std::vector<uint64_t> all;
         all.reserve(tree_.size());
-        for (uint32_t i = 3; i < tree_.size(); ++i) all.push_back({tree_[i].bounds.halfArea(), i});
+        for (uint32_t i = 3; i < tree_.size(); ++i)
+            all.push_back(uint64_t{~std::bit_cast<uint32_t>(tree_[i].bounds.halfArea())} << 32 | i);
         const size_t count = std::min(all.size(), all.size() / roundShare + 64);
-        std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end(),
-                         [](const Candidate& a, const Candidate& b) {
-                             return a.area != b.area ? a.area > b.area : a.node < b.node;
-                         });
+        std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
         std::vector<uint32_t> nodes(count);
         std::transform(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), nodes.begin(),
-                       [](const Candidate& candidate) { return candidate.node; });
+                       [](uint64_t candidate) { return static_cast<uint32_t>(candidate); });
         return nodes;
     }
 
