@@ -28,8 +28,8 @@ class Hash64 {
         static_assert(std::is_trivially_copyable_v<T>);
         add(std::as_bytes(std::span<const T, 1>(&value, 1)));
     }
-    template <typename T>
-    void addValues(const std::vector<T>& values) {
+    template <typename T, typename Allocator>
+    void addValues(const std::vector<T, Allocator>& values) {
         static_assert(std::is_trivially_copyable_v<T>);
         addValue(uint64_t{values.size()});
         add(std::as_bytes(std::span(values)));

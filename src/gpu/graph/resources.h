@@ -16,8 +16,8 @@ namespace limpid::gpu {
 
 class Device;
 
-template <typename T>
-std::span<const std::byte> bytesOf(const std::vector<T>& values) {
+template <typename T, typename Allocator>
+std::span<const std::byte> bytesOf(const std::vector<T, Allocator>& values) {
     return std::as_bytes(std::span<const T>(values));
 }
 

@@ -49,15 +49,12 @@ std::string validUtf8(const std::string& text) {
 
 uint64_t sceneHash(const scene::Scene& scene, const scene::SceneData& data) {
     Hash64 hash;
-    for (const auto* records : {&data.bvhNodes, &data.bvhInstances, &data.triangles, &data.vertices,
-                                &data.instances, &data.previousGeometry, &data.materials, &data.textureRefs,
-                                &data.lights, &data.lightTree, &data.motion.restVertices}) {
-        hash.addValues(*records);
-    }
-    for (const auto* records :
-         {&data.bvhTriangles, &data.environment, &data.environmentPyramid, &data.lightPyramid, &data.ggxTable,
-          &data.dielectricTable, &data.motion.morphDeltas})
-        hash.addValues(*records);
+    const auto add = [&](const auto&... records) { (hash.addValues(records), ...); };
+    add(data.bvhNodes, data.bvhInstances, data.triangles, data.vertices, data.instances,
+        data.previousGeometry, data.materials, data.textureRefs, data.lights, data.lightTree,
+        data.motion.restVertices);
+    add(data.bvhTriangles, data.environment, data.environmentPyramid, data.lightPyramid, data.ggxTable,
+        data.dielectricTable, data.motion.morphDeltas);
     hash.addValues(data.lightDensity);
     for (const auto& texels : data.texels) hash.addValues(texels);
     static_assert(std::has_unique_object_representations_v<scene::SceneFeatures>, "no padding");

@@ -15,8 +15,8 @@ namespace {
 
 /// Drivers split triangles themselves, if they do, and would test repeated ones twice. Vulkan ignores a
 /// triangle whose first coordinate is NaN.
-std::vector<vec4> withoutRepeats(const SceneData& data) {
-    std::vector<vec4> triangles = data.bvhTriangles;
+RawVector<vec4> withoutRepeats(const SceneData& data) {
+    RawVector<vec4> triangles = data.bvhTriangles;
     for (const uint32_t index : data.repeatedTriangles)
         triangles[size_t{index} * layout::BVH_TRIANGLE_TEXELS].x = std::numeric_limits<float>::quiet_NaN();
     return triangles;

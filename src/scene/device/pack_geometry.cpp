@@ -1,9 +1,12 @@
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <optional>
+#include <span>
 
 #include "base/error.h"
 #include "scene/device/pack.h"
@@ -20,6 +23,15 @@ constexpr size_t mergeLimit = 4096;
 vec3 safeNormalize(const vec3& v, const vec3& otherwise) {
     const float length = glm::length(v);
     return length > 1e-20f && std::isfinite(length) ? v / length : otherwise;
+}
+
+/// Calls use(i) for 0 to count - 1, on all cores if they are many.
+template <typename Use>
+void forEachIndex(size_t count, const Use& use) {
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 4096),
+                      [&](const tbb::blocked_range<size_t>& range) {
+                          for (size_t i = range.begin(); i < range.end(); ++i) use(i);
+                      });
 }
 
 struct Transform {
@@ -79,8 +91,8 @@ class GeometryPacker {
     };
     /// The triangles of one tree.
     struct Triangles {
-        std::vector<Corners> corners;
-        std::vector<TriangleRecord> records;
+        RawVector<Corners> corners;
+        RawVector<TriangleRecord> records;
     };
     struct Tree {
         uint32_t root, stackSize;
@@ -130,10 +142,8 @@ class GeometryPacker {
             flags |= layout::INSTANCE_DEFORMING;
         } else if (!hasTree) {
             firstTriangle = packShading(mesh, transform, static_cast<uint32_t>(instance.material));
-            for (size_t t = 0; t < mesh.triangleCount(); ++t) {
-                addTriangle(mesh, t, transform, static_cast<uint32_t>(t) | alphaFlag(mesh, instance, t),
-                            index, firstTriangle + static_cast<uint32_t>(t), static_);
-            }
+            addTriangles(mesh, transform, index, firstTriangle, static_,
+                         [&](uint32_t t) { return alphaFlag(mesh, instance, t); });
         } else if (firstTriangle == layout::NONE) {
             firstTriangle = meshFirstTriangle_[meshIndex] = packShading(mesh, Transform(mat4(1.0f)), 0);
         }
@@ -150,12 +160,21 @@ class GeometryPacker {
         return firstTriangle;
     }
 
-    void addTriangle(const Mesh& mesh, size_t triangle, const Transform& transform, uint32_t primitive,
-                     uint32_t instance, uint32_t shadingTriangle, Triangles& triangles) {
-        Corners& corners = triangles.corners.emplace_back();
-        for (size_t corner = 0; corner < 3; ++corner)
-            corners[corner] = transform.point(mesh.positions[mesh.indices[3 * triangle + corner]]);
-        triangles.records.push_back({primitive, instance, shadingTriangle});
+    /// Adds all triangles of a mesh. `flag` returns the alpha flag of a triangle.
+    template <typename Flag>
+    static void addTriangles(const Mesh& mesh, const Transform& transform, uint32_t instance,
+                             uint32_t firstTriangle, Triangles& triangles, const Flag& flag) {
+        const size_t first = triangles.records.size();
+        triangles.corners.resize(first + mesh.triangleCount());
+        triangles.records.resize(first + mesh.triangleCount());
+        forEachIndex(mesh.triangleCount(), [&](size_t i) {
+            for (size_t corner = 0; corner < 3; ++corner) {
+                triangles.corners[first + i][corner] =
+                    transform.point(mesh.positions[mesh.indices[3 * i + corner]]);
+            }
+            const auto t = static_cast<uint32_t>(i);
+            triangles.records[first + i] = {t | flag(t), instance, firstTriangle + t};
+        });
     }
 
     /// Appends transformed vertices and shading triangles; returns the first triangle's index.
@@ -164,19 +183,24 @@ class GeometryPacker {
         vertexCount_ += static_cast<uint32_t>(mesh.positions.size());
         const auto firstTriangle = static_cast<uint32_t>(data_.triangles.size());
         if (data_.features.vertexData) {
-            for (size_t v = 0; v < mesh.positions.size(); ++v) packVertex(mesh, v, transform);
+            const size_t first = data_.vertices.size();
+            data_.vertices.resize(first + 2 * mesh.positions.size());
+            forEachIndex(mesh.positions.size(),
+                         [&](size_t v) { packVertex(mesh, v, transform, &data_.vertices[first + 2 * v]); });
         }
         const uint32_t flags = mesh.normals.empty() ? 0 : layout::TRIANGLE_SMOOTH;
-        for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+        data_.triangles.resize(firstTriangle + mesh.triangleCount());
+        forEachIndex(mesh.triangleCount(), [&](size_t t) {
             const uint32_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
-            data_.triangles.emplace_back(firstVertex + mesh.indices[3 * t],
-                                         firstVertex + mesh.indices[3 * t + 1],
-                                         firstVertex + mesh.indices[3 * t + 2], (material + slot) | flags);
-        }
+            data_.triangles[firstTriangle + t] = {
+                firstVertex + mesh.indices[3 * t], firstVertex + mesh.indices[3 * t + 1],
+                firstVertex + mesh.indices[3 * t + 2], (material + slot) | flags};
+        });
         return firstTriangle;
     }
 
-    void packVertex(const Mesh& mesh, size_t v, const Transform& transform) {
+    /// Writes two texels.
+    static void packVertex(const Mesh& mesh, size_t v, const Transform& transform, uvec4* out) {
         const vec3 normal = mesh.normals.empty() ? vec3(0, 0, 1) : transform.normal(mesh.normals[v]);
         const vec4 tangent = mesh.tangents.empty() ? vec4(1, 0, 0, 1) : mesh.tangents[v];
         uint32_t tangentBits = packDirection(transform.direction(vec3(tangent))) & ~1u;
@@ -185,9 +209,9 @@ class GeometryPacker {
         const vec2 uv0 = mesh.uv0.empty() ? vec2(0.0f) : mesh.uv0[v];
         const vec2 uv1 = mesh.uv1.empty() ? vec2(0.0f) : mesh.uv1[v];
         const vec4 color = mesh.colors.empty() ? vec4(1.0f) : glm::clamp(mesh.colors[v], 0.0f, 1.0f);
-        data_.vertices.emplace_back(packDirection(normal), tangentBits, bits(uv0.x), bits(uv0.y));
-        data_.vertices.emplace_back(bits(uv1.x), bits(uv1.y), glm::packUnorm2x16({color.r, color.g}),
-                                    glm::packUnorm2x16({color.b, color.a}));
+        out[0] = {packDirection(normal), tangentBits, bits(uv0.x), bits(uv0.y)};
+        out[1] = {bits(uv1.x), bits(uv1.y), glm::packUnorm2x16({color.r, color.g}),
+                  glm::packUnorm2x16({color.b, color.a})};
     }
 
     /// Builds a tree and appends it to the node and triangle buffers.
@@ -203,24 +227,29 @@ class GeometryPacker {
         const uint32_t root = appendNodes(bvh.nodes, [&](uint32_t child, uint32_t firstNode) {
             return child + (BvhRef::isLeaf(child) ? firstTriangle : firstNode);
         });
-        data_.bvhTriangles.reserve(data_.bvhTriangles.size() +
-                                   bvh.order.size() * layout::BVH_TRIANGLE_TEXELS);
-        std::vector<bool> placed(triangles.corners.size());
-        for (const uint32_t index : bvh.order) {
-            if (placed[index]) {
-                data_.repeatedTriangles.push_back(
-                    static_cast<uint32_t>(data_.bvhTriangles.size() / layout::BVH_TRIANGLE_TEXELS));
-            }
-            placed[index] = true;
-            const Corners& corners = triangles.corners[index];
-            const TriangleRecord& record = triangles.records[index];
-            data_.bvhTriangles.emplace_back(corners[0], std::bit_cast<float>(record.primitive));
-            data_.bvhTriangles.emplace_back(corners[1], std::bit_cast<float>(record.instance));
-            data_.bvhTriangles.emplace_back(corners[2], std::bit_cast<float>(record.shadingTriangle));
-        }
+        noteRepeated(bvh.order, triangles.corners.size(), firstTriangle);
+        data_.bvhTriangles.resize(data_.bvhTriangles.size() + bvh.order.size() * layout::BVH_TRIANGLE_TEXELS);
+        forEachIndex(bvh.order.size(), [&](size_t i) {
+            const auto& [a, b, c] = triangles.corners[bvh.order[i]];
+            const TriangleRecord& record = triangles.records[bvh.order[i]];
+            vec4* out = &data_.bvhTriangles[(firstTriangle + i) * layout::BVH_TRIANGLE_TEXELS];
+            out[0] = vec4(a, std::bit_cast<float>(record.primitive));
+            out[1] = vec4(b, std::bit_cast<float>(record.instance));
+            out[2] = vec4(c, std::bit_cast<float>(record.shadingTriangle));
+        });
         const bool opaque = std::find(isOpaque.begin(), isOpaque.end(), false) == isOpaque.end();
         data_.trees.push_back({firstTriangle, static_cast<uint32_t>(bvh.order.size()), opaque, moves});
         return {root, bvh.stackSize, bvh.bounds, static_cast<uint32_t>(data_.trees.size() - 1)};
+    }
+
+    /// Where a tree's leaves have a triangle for the second time.
+    void noteRepeated(std::span<const uint32_t> order, size_t triangles, uint32_t firstTriangle) {
+        if (order.size() == triangles) return;
+        std::vector<bool> placed(triangles);
+        for (uint32_t i = 0; i < order.size(); ++i) {
+            if (placed[order[i]]) data_.repeatedTriangles.push_back(firstTriangle + i);
+            placed[order[i]] = true;
+        }
     }
 
     /// By triangle. Others are not split: each part would decide at random for itself whether a ray passes.
@@ -244,7 +273,7 @@ class GeometryPacker {
     }
 
     template <typename Rebase>
-    uint32_t appendNodes(const std::vector<BvhNode>& nodes, const Rebase& rebase) {
+    uint32_t appendNodes(std::span<const BvhNode> nodes, const Rebase& rebase) {
         const uint32_t root = nodeCount();
         data_.bvhNodes.reserve(data_.bvhNodes.size() + nodes.size() * layout::BVH_NODE_TEXELS);
         for (BvhNode node : nodes) {
@@ -314,10 +343,8 @@ class GeometryPacker {
             const uint32_t firstTriangle =
                 data_.instances[size_t{deforming.instance} * layout::INSTANCE_TEXELS + 3].z;
             Triangles triangles;
-            for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
-                addTriangle(mesh, t, Transform(mat4(1.0f)), t | alphaFlag(mesh, instance, t), layout::NONE,
-                            firstTriangle + t, triangles);
-            }
+            addTriangles(mesh, Transform(mat4(1.0f)), layout::NONE, firstTriangle, triangles,
+                         [&](uint32_t t) { return alphaFlag(mesh, instance, t); });
             const Tree tree = appendTree(triangles, true);
             deforming.leaf = static_cast<uint32_t>(motion.leaves.size());
             const uint32_t record = addRecord(tree, instance.transform, deforming.instance);
@@ -355,14 +382,16 @@ class GeometryPacker {
     Tree appendMeshTree(size_t meshIndex) {
         const Mesh& mesh = scene_.meshes[meshIndex];
         Triangles triangles;
-        for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
-            uint32_t flag = 0;
-            for (const Instance& instance : scene_.instances) {
-                if (static_cast<size_t>(instance.mesh) == meshIndex) flag |= alphaFlag(mesh, instance, t);
-            }
-            addTriangle(mesh, t, Transform(mat4(1.0f)), t | flag, layout::NONE,
-                        meshFirstTriangle_[meshIndex] + t, triangles);
+        std::vector<const Instance*> uses;
+        for (const Instance& instance : scene_.instances) {
+            if (static_cast<size_t>(instance.mesh) == meshIndex) uses.push_back(&instance);
         }
+        addTriangles(mesh, Transform(mat4(1.0f)), layout::NONE, meshFirstTriangle_[meshIndex], triangles,
+                     [&](uint32_t t) {
+                         uint32_t flag = 0;
+                         for (const Instance* instance : uses) flag |= alphaFlag(mesh, *instance, t);
+                         return flag;
+                     });
         return appendTree(triangles);
     }
 

@@ -22,9 +22,9 @@ void packMaterialsAndTables(const Scene& scene, SceneData& data, const Progress&
     if (data.features.roughGlass) fillDielectricTable(data.dielectricTable);
 }
 
-template <typename T>
-uint64_t bytesIn(const std::vector<T>& values) {
-    return values.size() * sizeof(T);
+template <typename Vector>
+uint64_t bytesIn(const Vector& values) {
+    return values.size() * sizeof(values[0]);
 }
 
 }  // namespace
@@ -39,10 +39,9 @@ size_t Scene::triangleCount() const {
 uint64_t SceneData::byteCount() const {
     uint64_t sum = bytesIn(bvhTriangles) + bytesIn(environment) + bytesIn(ggxTable) + bytesIn(lightPyramid) +
                    bytesIn(environmentPyramid) + bytesIn(motion.morphDeltas) + bytesIn(lightDensity) +
-                   bytesIn(dielectricTable);
-    for (const auto* records :
-         {&bvhNodes, &bvhInstances, &triangles, &vertices, &instances, &previousGeometry, &materials,
-          &textureRefs, &lights, &lightTree, &motion.restVertices}) {
+                   bytesIn(dielectricTable) + bytesIn(triangles) + bytesIn(vertices);
+    for (const auto* records : {&bvhNodes, &bvhInstances, &instances, &previousGeometry, &materials,
+                                &textureRefs, &lights, &lightTree, &motion.restVertices}) {
         sum += bytesIn(*records);
     }
     for (const auto& buffer : texels) sum += bytesIn(buffer);

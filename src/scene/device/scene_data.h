@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "base/raw_vector.h"
 #include "gpu/graph/resources.h"
 #include "scene/model/scene.h"
 #include "scene/motion/motion_data.h"
@@ -27,9 +28,11 @@ struct SceneFeatures {
 };
 
 struct SceneData {
-    std::vector<uvec4> bvhNodes, bvhInstances, triangles, vertices, instances, previousGeometry, materials,
-        textureRefs, lights, lightTree;
-    std::vector<vec4> bvhTriangles, environment, environmentPyramid, lightPyramid, ggxTable, dielectricTable;
+    RawVector<vec4> bvhTriangles;
+    RawVector<uvec4> triangles, vertices;
+    std::vector<uvec4> bvhNodes, bvhInstances, instances, previousGeometry, materials, textureRefs, lights,
+        lightTree;
+    std::vector<vec4> environment, environmentPyramid, lightPyramid, ggxTable, dielectricTable;
     std::vector<float> lightDensity;
     std::array<std::vector<uint32_t>, layout::TEXEL_BUFFERS> texels;
     SceneFeatures features;

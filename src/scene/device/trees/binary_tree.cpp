@@ -1,6 +1,5 @@
 #include "scene/device/trees/binary_tree.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
@@ -8,6 +7,8 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+
+#include "scene/device/trees/parallel_partition.h"
 
 namespace limpid::scene {
 namespace {
@@ -91,16 +92,38 @@ Bins fillBins(std::span<const Reference> references, size_t grain, const Add& ad
     });
 }
 
+struct Boxes {
+    Aabb all, centers;
+};
+
+/// The box of all references, and that of their centers.
+Boxes boxesOf(std::span<const Reference> references) {
+    const auto add = [&](const tbb::blocked_range<size_t>& range, Boxes boxes) {
+        for (size_t i = range.begin(); i < range.end(); ++i) {
+            boxes.all.grow(references[i].bounds);
+            boxes.centers.grow(references[i].bounds.center());
+        }
+        return boxes;
+    };
+    constexpr size_t grain = size_t{1} << 16;
+    const tbb::blocked_range<size_t> all(0, references.size(), grain);
+    if (references.size() <= 2 * grain) return add(all, Boxes{});
+    return tbb::parallel_reduce(all, Boxes{}, add, [](Boxes a, const Boxes& b) {
+        a.all.grow(b.all);
+        a.centers.grow(b.centers);
+        return a;
+    });
+}
+
 class Builder {
   public:
-    Builder(std::vector<Reference> references, uint32_t sahDepth, const Splits& splits,
-            const Progress& progress)
+    Builder(References references, uint32_t sahDepth, const Splits& splits, const Progress& progress)
         : references_(std::move(references)), splits_(splits), sahDepth_(sahDepth), progress_(progress) {
         const auto count = static_cast<uint32_t>(references_.size());
         references_.resize(count + splits.most);
         nodes_.resize(2 * references_.size() - 1);
         build(0, 1, {0, count, splits.most}, 0);
-        closeGaps();
+        if (splits.most > 0) closeGaps();
     }
 
     BinaryTree take() { return std::move(nodes_); }
@@ -119,15 +142,16 @@ class Builder {
     /// Nodes below this one are numbered from `children` on, with gaps where room for references was not
     /// used. So their numbers do not depend on the threads.
     void build(uint32_t index, uint32_t children, const Range& range, uint32_t depth) {
-        BinaryNode& node = nodes_[index];
+        BinaryNode& node = nodes_[index] = {};
         if (range.count == 1) {
             node.primitive = references_[range.first].primitive;
             node.bounds = references_[range.first].bounds;
             return;
         }
-        for (const Reference& reference : in(range)) node.bounds.grow(reference.bounds);
+        const Boxes boxes = boxesOf(in(range));
+        node.bounds = boxes.all;
         if (index == 0) leastOverlap_ = leastOverlap * node.bounds.halfArea();
-        const Halves halves = partition(node.bounds, range, depth);
+        const Halves halves = partition(boxes, range, depth);
         const Range &left = halves.left, &right = halves.right;
         node.child = children;
         const uint32_t afterLeft = children + 2 * (left.count + left.room);
@@ -168,21 +192,18 @@ class Builder {
         Range left, right;
     };
 
-    Halves partition(const Aabb& bounds, const Range& range, uint32_t depth) {
-        Aabb centers;
-        for (const Reference& reference : in(range)) centers.grow(reference.bounds.center());
-        const Split split = depth < sahDepth_ ? objectSplit(centers, range) : Split{};
-        if (split.axis < 0) return halved(centers, range);
+    Halves partition(const Boxes& boxes, const Range& range, uint32_t depth) {
+        const Split split = depth < sahDepth_ ? objectSplit(boxes.centers, range) : Split{};
+        if (split.axis < 0) return halved(boxes.centers, range);
         if (range.room > 0) {
-            const Split spatial = spatialSplit(bounds, split, range);
-            if (spatial.cost < mostOfCost * split.cost) return splitAt(spatial, bounds, range);
+            const Split spatial = spatialSplit(boxes.all, split, range);
+            if (spatial.cost < mostOfCost * split.cost) return splitAt(spatial, boxes.all, range);
         }
-        const Axis axis(split.axis, centers.lower[split.axis], centers.upper[split.axis]);
-        const std::span<Reference> all = in(range);
-        const auto middle = std::partition(all.begin(), all.end(), [&](const Reference& reference) {
+        const Axis axis(split.axis, boxes.centers.lower[split.axis], boxes.centers.upper[split.axis]);
+        const size_t left = partitionInParallel(in(range), [&](const Reference& reference) {
             return axis.binOf(reference.bounds.center()[split.axis]) <= split.bin;
         });
-        return divided(range, static_cast<uint32_t>(middle - all.begin()));
+        return divided(range, static_cast<uint32_t>(left));
     }
 
     Halves halved(const Aabb& centers, const Range& range) {
@@ -324,13 +345,9 @@ class Builder {
         return divided(longer, lefts);
     }
 
-    Halves halvedAgain(const Range& range) {
-        Aabb centers;
-        for (const Reference& reference : in(range)) centers.grow(reference.bounds.center());
-        return halved(centers, range);
-    }
+    Halves halvedAgain(const Range& range) { return halved(boxesOf(in(range)).centers, range); }
 
-    std::vector<Reference> references_;
+    References references_;
     const Splits& splits_;
     uint32_t sahDepth_;
     float leastOverlap_ = 0.0f;  ///< as an area
@@ -341,7 +358,7 @@ class Builder {
 
 }  // namespace
 
-BinaryTree buildBinaryTree(std::vector<Reference> references, uint32_t sahDepth, const Splits& splits,
+BinaryTree buildBinaryTree(References references, uint32_t sahDepth, const Splits& splits,
                            const Progress& progress) {
     return Builder(std::move(references), sahDepth, splits, progress).take();
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "base/raw_vector.h"
 #include "scene/device/trees/aabb.h"
 #include "scene/device/trees/clip.h"
 
@@ -26,7 +27,7 @@ struct BinaryNode {
 };
 
 /// The root is node 0. The nodes after it are pairs of siblings.
-using BinaryTree = std::vector<BinaryNode>;
+using BinaryTree = RawVector<BinaryNode>;
 
 /// Of any node but the root.
 inline uint32_t siblingOf(uint32_t node) {
@@ -41,6 +42,7 @@ struct Reference {
     Aabb bounds;
     uint32_t primitive = 0;
 };
+using References = RawVector<Reference>;
 
 /// Triangles that may be split.
 struct Splits {
@@ -52,7 +54,7 @@ struct Splits {
 /// Builds a tree with a leaf for each reference, of which there is at least one, on all cores: a binned SAH
 /// build down to `sahDepth`, halves below. The result depends on the arguments alone. Throws Cancelled as
 /// `progress` does.
-BinaryTree buildBinaryTree(std::vector<Reference> references, uint32_t sahDepth, const Splits& splits = {},
+BinaryTree buildBinaryTree(References references, uint32_t sahDepth, const Splits& splits = {},
                            const Progress& progress = {});
 
 }  // namespace limpid::scene

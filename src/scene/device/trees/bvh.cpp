@@ -1,10 +1,14 @@
 #include "scene/device/trees/bvh.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "scene/device/trees/collapse.h"
@@ -40,13 +44,19 @@ void quantise(BvhNode& node, uint32_t child, const Aabb& box) {
     }
 }
 
-/// Writes the wide nodes of a collapsed tree, and the order of primitives in their leaves.
+/// Writes the wide nodes of a collapsed tree, and the order of primitives in their leaves. Small subtrees are
+/// written by others before, each to arrays of its own.
 class WideBuilder {
   public:
-    WideBuilder(const Collapse& collapse, Bvh& out) : collapse_(collapse), out_(out) {}
+    /// Subtrees of up to `partSize` leaves are in `parts`, in the order of a traversal.
+    WideBuilder(const Collapse& collapse, Bvh& out, uint32_t partSize = 0, std::span<Bvh> parts = {})
+        : collapse_(collapse), out_(out), partSize_(partSize), parts_(parts) {}
 
-    /// Writes the node for `binary` and returns how many stack entries its subtree needs.
-    uint32_t emit(uint32_t index, uint32_t binary) {
+    /// Appends the nodes of the subtree of `binary`, and returns how many stack entries it needs.
+    uint32_t emit(uint32_t binary) {
+        if (collapse_.leavesBelow(binary) <= partSize_) return reservePart();
+        const size_t index = out_.nodes.size();
+        out_.nodes.emplace_back(BvhNode{});
         std::vector<BvhChild> wide;
         uint32_t deepest = 0;
         for (const uint32_t child : collapse_.childrenOf(binary)) {
@@ -55,16 +65,43 @@ class WideBuilder {
                 wide.push_back({leaf(child), bounds});
                 continue;
             }
-            const auto wideIndex = static_cast<uint32_t>(out_.nodes.size());
-            wide.push_back({BvhRef::node(wideIndex), bounds});
-            out_.nodes.emplace_back();
-            deepest = std::max(deepest, emit(wideIndex, child));
+            wide.push_back({BvhRef::node(static_cast<uint32_t>(out_.nodes.size())), bounds});
+            deepest = std::max(deepest, emit(child));
         }
         out_.nodes[index] = makeBvhNode(wide);
         return deepest + 3;
     }
 
+    /// Copies the parts to their places, and frees them.
+    void fillParts() {
+        tbb::parallel_for(size_t{0}, places_.size(), [&](size_t i) {
+            const Bvh part = std::exchange(parts_[i], {});
+            const Place& place = places_[i];
+            auto out = out_.nodes.begin() + place.node;
+            for (BvhNode node : part.nodes) {
+                for (uint32_t& child : node.children)
+                    child += BvhRef::isLeaf(child) ? place.entry : place.node;
+                *out++ = node;
+            }
+            std::copy(part.order.begin(), part.order.end(), out_.order.begin() + place.entry);
+        });
+    }
+
   private:
+    /// Where a part begins.
+    struct Place {
+        uint32_t node, entry;
+    };
+
+    uint32_t reservePart() {
+        const Bvh& part = parts_[places_.size()];
+        places_.push_back(
+            {static_cast<uint32_t>(out_.nodes.size()), static_cast<uint32_t>(out_.order.size())});
+        out_.nodes.resize(out_.nodes.size() + part.nodes.size());
+        out_.order.resize(out_.order.size() + part.order.size());
+        return part.stackSize;
+    }
+
     uint32_t leaf(uint32_t binary) {
         const auto first = static_cast<uint32_t>(out_.order.size());
         place(binary, first);
@@ -85,7 +122,21 @@ class WideBuilder {
 
     const Collapse& collapse_;
     Bvh& out_;
+    uint32_t partSize_;
+    std::span<Bvh> parts_;
+    std::vector<Place> places_;
 };
+
+/// Subtrees of up to so many leaves are written by one thread.
+constexpr uint32_t partSize = 1u << 15;
+
+/// The largest subtrees of up to `partSize` leaves, in the order of a traversal.
+void findParts(const Collapse& collapse, uint32_t binary, std::vector<uint32_t>& parts) {
+    if (collapse.leavesBelow(binary) <= partSize) return parts.push_back(binary);
+    for (const uint32_t child : collapse.childrenOf(binary)) {
+        if (!collapse.becomesLeaf(child)) findParts(collapse, child, parts);
+    }
+}
 
 }  // namespace
 
@@ -123,6 +174,12 @@ namespace {
 constexpr uint32_t maxTrianglesPerLeaf = 4;
 /// Trees of more triangles take long to build, and all the memory that there is.
 constexpr size_t largeTree = size_t{1} << 20;
+constexpr size_t hugeTree = size_t{1} << 23;
+
+/// Of reinsertion.
+uint32_t roundsFor(size_t triangles) {
+    return triangles > hugeTree ? 0 : triangles > largeTree ? 1 : 5;
+}
 
 void checkCount(size_t primitives) {
     if (primitives <= BvhRef::maxIndex) return;
@@ -133,7 +190,7 @@ void checkCount(size_t primitives) {
 /// Leaves beyond the end of the triangles: reads there return zeros, which no ray hits.
 Bvh emptyBvh() {
     Bvh bvh;
-    BvhNode& node = bvh.nodes.emplace_back();
+    BvhNode& node = bvh.nodes.emplace_back(BvhNode{});
     for (int axis = 0; axis < 3; ++axis) node.lower[axis].fill(255);
     node.exponents.fill(127);
     node.children.fill(BvhRef::leaf(0, 1));
@@ -142,12 +199,22 @@ Bvh emptyBvh() {
 }
 
 Bvh wideBvh(const BinaryTree& binary, uint32_t maxLeafSize) {
+    const Collapse collapse(binary, maxLeafSize);
+    std::vector<uint32_t> roots;
+    findParts(collapse, 0, roots);
+    std::vector<Bvh> parts(roots.size());
+    tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
+        parts[i].nodes.reserve(collapse.leavesBelow(roots[i]) / 2 + 1);
+        parts[i].order.reserve(collapse.leavesBelow(roots[i]));
+        parts[i].stackSize = WideBuilder(collapse, parts[i]).emit(roots[i]);
+    });
     Bvh bvh;
     bvh.bounds = binary[0].bounds;
     bvh.nodes.reserve(binary.size() / 4 + 1);
-    bvh.nodes.emplace_back();
     bvh.order.reserve(binary.size() / 2 + 1);
-    bvh.stackSize = WideBuilder(Collapse(binary, maxLeafSize), bvh).emit(0, 0);
+    WideBuilder builder(collapse, bvh, partSize, parts);
+    bvh.stackSize = builder.emit(0);
+    builder.fillParts();
     return bvh;
 }
 
@@ -156,7 +223,7 @@ Bvh wideBvh(const BinaryTree& binary, uint32_t maxLeafSize) {
 Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth) {
     checkCount(boxes.size());
     if (boxes.empty()) return emptyBvh();
-    std::vector<Reference> references(boxes.size());
+    References references(boxes.size());
     for (uint32_t i = 0; i < boxes.size(); ++i) references[i] = {boxes[i], i};
     return wideBvh(buildBinaryTree(std::move(references), sahDepth), maxLeafSize);
 }
@@ -167,15 +234,20 @@ Bvh buildTriangleBvh(std::span<const Corners> triangles, const std::vector<bool>
     const auto most = static_cast<size_t>(large ? 0 : std::count(divisible.begin(), divisible.end(), true));
     checkCount(triangles.size() + most);
     if (triangles.empty()) return emptyBvh();
-    std::vector<Reference> references;
+    References references;
     references.reserve(triangles.size() + most);
-    for (uint32_t i = 0; i < triangles.size(); ++i) {
-        references.push_back({{}, i});
-        for (const vec3& corner : triangles[i]) references.back().bounds.grow(corner);
-    }
+    references.resize(triangles.size());
+    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(triangles.size()), 4096),
+                      [&](const tbb::blocked_range<uint32_t>& range) {
+                          for (uint32_t i = range.begin(); i < range.end(); ++i) {
+                              Aabb box;
+                              for (const vec3& corner : triangles[i]) box.grow(corner);
+                              references[i] = {box, i};
+                          }
+                      });
     const Splits splits{triangles, divisible, static_cast<uint32_t>(most)};
     BinaryTree binary = buildBinaryTree(std::move(references), maxSahDepth, splits, progress.part(0.0, 0.6));
-    reinsert(binary, large ? 1 : 5, progress.part(0.6, 1.0));
+    reinsert(binary, roundsFor(triangles.size()), progress.part(0.6, 1.0));
     return wideBvh(binary, maxTrianglesPerLeaf);
 }
 

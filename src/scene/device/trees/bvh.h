@@ -12,6 +12,7 @@
 
 #include "base/math.h"
 #include "base/progress.h"
+#include "base/raw_vector.h"
 #include "scene/device/trees/aabb.h"
 #include "scene/device/trees/binary_tree.h"
 
@@ -49,8 +50,8 @@ struct BvhNode {
 static_assert(sizeof(BvhNode) == 64);
 
 struct Bvh {
-    std::vector<BvhNode> nodes;   ///< the root is nodes[0]
-    std::vector<uint32_t> order;  ///< leaves index into this; it holds the primitives' original indices
+    RawVector<BvhNode> nodes;   ///< the root is nodes[0]
+    RawVector<uint32_t> order;  ///< leaves index into this; it holds the primitives' original indices
     Aabb bounds;
     uint32_t stackSize = 0;  ///< maximum number of stack entries of a depth-first traversal, in any order of
                              ///< children
@@ -63,8 +64,8 @@ Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDept
 
 /// The same over triangles, with up to four in a leaf. Takes longer, and rays are faster: triangles are split
 /// where `divisible` (by triangle) allows it, so that `order` may have one of them more than once (but no
-/// leaf has), and nodes are moved (reinsertion.h). Both is done less in trees of more than a million
-/// triangles. Throws Cancelled as `progress` does.
+/// leaf has), and nodes are moved (reinsertion.h). Trees of more than a million triangles are not split, and
+/// moved less; those of more than eight million are neither. Throws Cancelled as `progress` does.
 Bvh buildTriangleBvh(std::span<const Corners> triangles, const std::vector<bool>& divisible,
                      const Progress& progress = {});
 

@@ -177,7 +177,7 @@ TEST(Clip, APartIsTheTriangleWithinTheBox) {
 }
 
 BinaryTree treeOver(const std::vector<Corners>& triangles) {
-    std::vector<Reference> references;
+    References references;
     for (uint32_t i = 0; i < triangles.size(); ++i) references.push_back({boxOf(triangles[i]), i});
     return buildBinaryTree(references, maxSahDepth);
 }

@@ -31,7 +31,7 @@ std::vector<uint32_t> Collapse::childrenOf(uint32_t node) const {
 void Collapse::solve(uint32_t index, uint32_t depth) {
     const BinaryNode& node = tree_[index];
     const float area = node.bounds.halfArea();
-    Best& best = best_[index];
+    Best& best = best_[index] = {};
     if (node.isLeaf()) {
         best.costs.fill(area);
         best.count = best.leaf = 1;

@@ -25,6 +25,8 @@ class Collapse {
     std::vector<uint32_t> childrenOf(uint32_t node) const;
     /// Of a child: it becomes a leaf with all primitives below it, at most maxLeafSize.
     bool becomesLeaf(uint32_t node) const { return best_[node].leaf; }
+    /// The number of leaves of the binary tree below a node.
+    uint32_t leavesBelow(uint32_t node) const { return best_[node].count; }
 
   private:
     struct Best {
@@ -41,7 +43,7 @@ class Collapse {
 
     const BinaryTree& tree_;
     uint32_t maxLeafSize_;
-    std::vector<Best> best_;
+    RawVector<Best> best_;
 };
 
 }  // namespace limpid::scene

@@ -59,10 +59,12 @@ class Reinserter {
 
     std::vector<uint32_t> largest() const {
         // Numbers that are smaller the larger the box is, since the bits of positive floats grow with them.
-        std::vector<uint64_t> all;
-        all.reserve(tree_.size());
-        for (uint32_t i = 3; i < tree_.size(); ++i)
-            all.push_back(uint64_t{~std::bit_cast<uint32_t>(tree_[i].bounds.halfArea())} << 32 | i);
+        RawVector<uint64_t> all(tree_.size() - 3);
+        const tbb::blocked_range<size_t> nodesBelow(3, tree_.size(), 4096);
+        tbb::parallel_for(nodesBelow, [&](const tbb::blocked_range<size_t>& range) {
+            for (size_t i = range.begin(); i < range.end(); ++i)
+                all[i - 3] = uint64_t{~std::bit_cast<uint32_t>(tree_[i].bounds.halfArea())} << 32 | i;
+        });
         const size_t count = std::min(all.size(), all.size() / roundShare + 64);
         std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
         std::vector<uint32_t> nodes(count);

@@ -17,7 +17,7 @@ struct TopLeaf {
 };
 
 struct TopTree {
-    std::vector<BvhNode> nodes;  ///< the root is the first; at most max(1, leaves - 1)
+    RawVector<BvhNode> nodes;  ///< the root is the first; at most max(1, leaves - 1)
     uint32_t stackSize = 0;
     Aabb bounds;
 };
