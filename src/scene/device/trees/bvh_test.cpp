@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 #include <random>
+#include <span>
 
 #include "scene/device/trees/collapse.h"
+#include "scene/device/trees/parallel_partition.h"
 #include "scene/device/trees/reinsertion.h"
 
 namespace limpid::scene {
@@ -154,6 +157,62 @@ TEST(TriangleBvh, IsTheSameEachTime) {
         ASSERT_EQ(first.nodes.size(), again.nodes.size());
         EXPECT_EQ(std::memcmp(first.nodes.data(), again.nodes.data(), first.nodes.size() * sizeof(BvhNode)),
                   0);
+    }
+}
+
+/// What a traversal meets.
+struct Met {
+    std::vector<int> nodes, entries;  ///< how often
+    uint32_t outside = 0;             ///< triangles that leave the box of their leaf
+};
+
+void traverse(const Bvh& bvh, const std::vector<Corners>& triangles, uint32_t index, Met& met) {
+    ++met.nodes[index];
+    const BvhNode& node = bvh.nodes[index];
+    for (uint32_t child = 0; child < 4; ++child) {
+        if (!node.hasChild(child)) continue;
+        const uint32_t ref = node.children[child];
+        if (!BvhRef::isLeaf(ref)) {
+            traverse(bvh, triangles, ref, met);
+            continue;
+        }
+        for (uint32_t i = BvhRef::first(ref); i < BvhRef::first(ref) + BvhRef::count(ref); ++i) {
+            ++met.entries[i];
+            const Aabb box = boxOf(triangles[bvh.order[i]]), leaf = node.childBounds(child);
+            met.outside += !contains(leaf, box.lower) || !contains(leaf, box.upper);
+        }
+    }
+}
+
+/// Several threads write the nodes of one tree.
+TEST(TriangleBvh, OfManyTrianglesIsWhole) {
+    const std::vector<Corners> triangles = mixedTriangles(150000);
+    const Bvh bvh = buildTriangleBvh(triangles, std::vector<bool>(triangles.size(), false));
+    ASSERT_EQ(bvh.order.size(), triangles.size());
+    Met met{std::vector<int>(bvh.nodes.size()), std::vector<int>(bvh.order.size())};
+    traverse(bvh, triangles, 0, met);
+    EXPECT_EQ(std::count(met.nodes.begin(), met.nodes.end(), 1), bvh.nodes.size());
+    EXPECT_EQ(std::count(met.entries.begin(), met.entries.end(), 1), bvh.order.size());
+    EXPECT_EQ(met.outside, 0u);
+    std::vector<int> times(triangles.size());
+    for (const uint32_t triangle : bvh.order) ++times[triangle];
+    EXPECT_EQ(std::count(times.begin(), times.end(), 1), triangles.size());
+}
+
+TEST(PartitionInParallel, IsAPartition) {
+    std::mt19937 random(seed);
+    std::vector<uint32_t> numbers(777777);
+    for (const uint32_t below : {0u, 1u, 70000u, 388888u, 777776u, 777777u}) {
+        std::iota(numbers.begin(), numbers.end(), 0u);
+        std::shuffle(numbers.begin(), numbers.end(), random);
+        std::vector<uint32_t> again = numbers;
+        const auto isLeft = [&](uint32_t number) { return number < below; };
+        ASSERT_EQ(partitionInParallel(std::span(numbers), isLeft), below);
+        EXPECT_TRUE(std::all_of(numbers.begin(), numbers.begin() + below, isLeft));
+        partitionInParallel(std::span(again), isLeft);
+        EXPECT_EQ(numbers, again);
+        std::sort(numbers.begin(), numbers.end());
+        for (uint32_t i = 0; i < numbers.size(); ++i) ASSERT_EQ(numbers[i], i);
     }
 }
 
