@@ -1,10 +1,9 @@
 #include "scene/device/scene_data.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 
 #include "scene/device/pack.h"
+#include "scene/device/run_both.h"
 
 namespace limpid::scene {
 namespace {
@@ -51,8 +50,8 @@ uint64_t SceneData::byteCount() const {
 SceneData buildSceneData(const Scene& scene, const Progress& progress, std::optional<bool> hasLightTree) {
     SceneData data;
     data.features.vertexData = hasVertexData(scene);
-    tbb::parallel_invoke([&] { packMaterialsAndTables(scene, data, progress.part(0.0, 0.3)); },
-                         [&] { packGeometry(scene, data, progress.part(0.0, 0.9)); });
+    runBoth([&] { packMaterialsAndTables(scene, data, progress.part(0.0, 0.3)); },
+            [&] { packGeometry(scene, data, progress.part(0.0, 0.9)); });
     progress.at(0.9);
     packLights(scene, data, hasLightTree);
     return data;

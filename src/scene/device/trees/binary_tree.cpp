@@ -1,6 +1,5 @@
 #include "scene/device/trees/binary_tree.h"
 
-#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "scene/device/run_both.h"
 #include "scene/device/trees/parallel_partition.h"
 
 namespace limpid::scene {
@@ -158,7 +158,7 @@ class Builder {
         const auto buildLeft = [&] { build(children, children + 2, left, depth + 1); };
         const auto buildRight = [&] { build(children + 1, afterLeft, right, depth + 1); };
         if (range.count > parallelThreshold) {
-            tbb::parallel_invoke(buildLeft, buildRight);
+            runBoth(buildLeft, buildRight);
             if (left.count <= parallelThreshold) report(left.count);
             if (right.count <= parallelThreshold) report(right.count);
         } else {

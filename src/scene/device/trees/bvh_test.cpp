@@ -2,13 +2,19 @@
 #include "scene/device/trees/bvh.h"
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstring>
 #include <numeric>
 #include <random>
 #include <span>
+#include <stop_token>
+#include <thread>
 
+#include "scene/device/run_both.h"
 #include "scene/device/trees/collapse.h"
 #include "scene/device/trees/parallel_partition.h"
 #include "scene/device/trees/reinsertion.h"
@@ -197,6 +203,42 @@ TEST(TriangleBvh, OfManyTrianglesIsWhole) {
     std::vector<int> times(triangles.size());
     for (const uint32_t triangle : bvh.order) ++times[triangle];
     EXPECT_EQ(std::count(times.begin(), times.end(), 1), triangles.size());
+}
+
+TEST(RunBoth, FinishesOneWhenTheOtherThrows) {
+    std::atomic<bool> begun = false;
+    std::atomic<int> count = 0;
+    const auto throws = [&] {
+        while (!begun) std::this_thread::yield();
+        throw Cancelled();
+    };
+    const auto counts = [&] {
+        begun = true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        tbb::parallel_for(0, 1000, [&](int) { ++count; });
+    };
+    EXPECT_THROW(runBoth(throws, counts), Cancelled);
+    EXPECT_EQ(count, 1000);
+}
+
+/// Whatever has been done by then.
+TEST(TriangleBvh, CanBeGivenUp) {
+    const std::vector<Corners> triangles = mixedTriangles(30000);
+    const std::vector<bool> divisible(triangles.size(), true);
+    for (int percent = 0; percent < 100; percent += 7) {
+        const Progress progress = Progress::watched();
+        std::jthread canceller([&](const std::stop_token& isBuilt) {
+            while (100.0 * progress.done() < percent && !isBuilt.stop_requested()) std::this_thread::yield();
+            progress.cancel();
+        });
+        try {
+            const Bvh bvh = buildTriangleBvh(triangles, divisible, progress);
+            EXPECT_GT(percent, 0);
+            EXPECT_GE(bvh.order.size(), triangles.size());
+        } catch (const Cancelled&) {
+        }
+        canceller.request_stop();
+    }
 }
 
 TEST(PartitionInParallel, IsAPartition) {

@@ -1,0 +1,28 @@
+// Two functions at the same time, either of which may throw.
+#pragma once
+
+#include <tbb/parallel_invoke.h>
+
+#include <exception>
+
+namespace limpid::scene {
+
+/// Runs both, and throws what `first` threw, or else `second`, once both have returned.
+/// tbb::parallel_invoke() would cancel the other one: TBB's loops in it would return before they are done,
+/// without telling it, and it would go on with what is not there.
+template <typename First, typename Second>
+void runBoth(const First& first, const Second& second) {
+    const auto kept = [](const auto& function, std::exception_ptr& fault) {
+        try {
+            function();
+        } catch (...) {
+            fault = std::current_exception();
+        }
+    };
+    std::exception_ptr faultOfFirst, faultOfSecond;
+    tbb::parallel_invoke([&] { kept(first, faultOfFirst); }, [&] { kept(second, faultOfSecond); });
+    if (faultOfFirst) std::rethrow_exception(faultOfFirst);
+    if (faultOfSecond) std::rethrow_exception(faultOfSecond);
+}
+
+}  // namespace limpid::scene
