@@ -225,6 +225,7 @@ TEST(RunBoth, FinishesOneWhenTheOtherThrows) {
 TEST(TriangleBvh, CanBeGivenUp) {
     const std::vector<Corners> triangles = mixedTriangles(30000);
     const std::vector<bool> divisible(triangles.size(), true);
+    int given = 0;
     for (int percent = 0; percent < 100; percent += 7) {
         const Progress progress = Progress::watched();
         std::jthread canceller([&](const std::stop_token& isBuilt) {
@@ -233,12 +234,13 @@ TEST(TriangleBvh, CanBeGivenUp) {
         });
         try {
             const Bvh bvh = buildTriangleBvh(triangles, divisible, progress);
-            EXPECT_GT(percent, 0);
             EXPECT_GE(bvh.order.size(), triangles.size());
         } catch (const Cancelled&) {
+            ++given;
         }
         canceller.request_stop();
     }
+    EXPECT_GT(given, 0);
 }
 
 TEST(PartitionInParallel, IsAPartition) {
