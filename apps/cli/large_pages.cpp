@@ -28,7 +28,8 @@ void* allocateBlock(std::size_t size) {
     if (size > SIZE_MAX - largePage) return nullptr;
     const std::size_t rounded = (size + largePage - 1) / largePage * largePage;
     void* const block = std::aligned_alloc(largePage, rounded);
-    if (block) madvise(block, rounded, MADV_HUGEPAGE);  // without them it is slower, but works
+    // Not the last part of a page, which may be small. Without such pages it is slower, but works.
+    if (block) madvise(block, size / largePage * largePage, MADV_HUGEPAGE);
     return block;
 }
 

@@ -15,6 +15,8 @@ TEST(Progress, PartsReportSharesOfTheWhole) {
     EXPECT_EQ(whole.done(), 0.75);
     half.at(1.0);
     EXPECT_EQ(whole.done(), 1.0);
+    half.at(0.5);
+    EXPECT_EQ(whole.done(), 1.0);  // what another part reports late takes nothing back
 }
 
 TEST(Progress, EndsWorkThatWasGivenUp) {

@@ -27,7 +27,8 @@ struct RawAllocator : std::allocator<T> {
     }
 };
 
-/// Elements that resize() adds must be assigned before they are read.
+/// Elements that resize() adds must be assigned before they are read, or copied as the vector grows:
+/// reserve() first.
 template <typename T>
 using RawVector = std::vector<T, RawAllocator<T>>;
 

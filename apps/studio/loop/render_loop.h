@@ -38,6 +38,8 @@ class RenderLoop {
     RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tracer, const SceneLoader& load,
                const CameraStart& start, const StudioSettings& settings,
                const std::optional<SceneLoading::Order>& first, Mailbox& mailbox);
+    /// Gives up what is being loaded before it waits for the device.
+    ~RenderLoop() { loading_.cancel(); }
     /// The scene that the studio starts with, if it starts with one.
     static std::optional<SceneLoading::Order> firstScene(const StudioSettings& settings);
     /// Until the mailbox is closed, or as many frames were rendered as asked for.

@@ -19,8 +19,19 @@ DeformingInstance packDeformation(const Scene& scene, uint32_t instance, uint32_
                                   MotionData& motion);
 /// Determines the order in which the nodes of deforming trees are refitted.
 void findRefitLevels(SceneData& data);
-/// Packs materials, texture references and mip levels, and sets the features that depend on materials.
-void packMaterials(const Scene& scene, SceneData& data, const Progress& progress);
+/// Where the textures of a scene and their mip levels lie.
+struct TexturePlaces {
+    struct Place {
+        uint32_t buffer = 0, first = 0;  ///< of SceneData::texels
+    };
+    std::vector<std::optional<Place>> places;            ///< by texture; none: no material uses it
+    std::array<uint64_t, layout::TEXEL_BUFFERS> used{};  ///< texels in each buffer
+};
+/// Packs materials and texture references, and sets the features that depend on materials. Throws Error if
+/// the textures do not fit.
+TexturePlaces packMaterials(const Scene& scene, SceneData& data);
+/// Makes the mip levels of all textures.
+void fillTexels(const TexturePlaces& places, const Scene& scene, SceneData& data, const Progress& progress);
 /// Packs the light list, its tables, and the environment. Needs the geometry's instances.
 void packLights(const Scene& scene, SceneData& data, std::optional<bool> hasTree = {});
 /// Packs the light list and its tables only. Needs only the geometry's instances and bounding sphere.

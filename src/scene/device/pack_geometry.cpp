@@ -1,6 +1,4 @@
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <span>
 
 #include "base/error.h"
+#include "base/for_each_index.h"
 #include "scene/device/pack.h"
 #include "scene/device/trees/top_tree.h"
 
@@ -23,15 +22,6 @@ constexpr size_t mergeLimit = 4096;
 vec3 safeNormalize(const vec3& v, const vec3& otherwise) {
     const float length = glm::length(v);
     return length > 1e-20f && std::isfinite(length) ? v / length : otherwise;
-}
-
-/// Calls use(i) for 0 to count - 1, on all cores if they are many.
-template <typename Use>
-void forEachIndex(size_t count, const Use& use) {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 4096),
-                      [&](const tbb::blocked_range<size_t>& range) {
-                          for (size_t i = range.begin(); i < range.end(); ++i) use(i);
-                      });
 }
 
 struct Transform {

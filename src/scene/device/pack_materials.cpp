@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "base/error.h"
 #include "scene/device/mip_levels.h"
@@ -16,33 +16,19 @@ namespace {
 
 constexpr uint64_t texelsPerBuffer = uint64_t{1} << layout::TEXEL_BUFFER_SHIFT;
 
-/// Where a texture and its mip levels lie.
-struct PlacedTexture {
-    uint32_t buffer = 0, first = 0;
-
-    uint32_t firstTexel() const { return buffer << layout::TEXEL_BUFFER_SHIFT | first; }
-};
-
-/// Places textures in the first texel buffer with enough space.
-class TexturePlaces {
-  public:
-    PlacedTexture place(const Texture& texture) {
-        const uint64_t texels = mipTexelCount(texture);
-        for (uint32_t index = 0; index < layout::TEXEL_BUFFERS; ++index) {
-            uint64_t& used = used_[index];
-            if (used + texels > texelsPerBuffer) continue;
-            used += texels;
-            return {index, static_cast<uint32_t>(used - texels)};
-        }
-        throw Error(fmt::format(
-            "texture '{}' does not fit: all textures together exceed the limit of {} x 2^27 texels",
-            texture.name, layout::TEXEL_BUFFERS));
+/// Places a texture in the first texel buffer with enough space.
+TexturePlaces::Place placed(const Texture& texture, TexturePlaces& places) {
+    const uint64_t texels = mipTexelCount(texture);
+    for (uint32_t index = 0; index < layout::TEXEL_BUFFERS; ++index) {
+        uint64_t& used = places.used[index];
+        if (used + texels > texelsPerBuffer) continue;
+        used += texels;
+        return {index, static_cast<uint32_t>(used - texels)};
     }
-    const std::array<uint64_t, layout::TEXEL_BUFFERS>& used() const { return used_; }
-
-  private:
-    std::array<uint64_t, layout::TEXEL_BUFFERS> used_{};  ///< texels
-};
+    throw Error(
+        fmt::format("texture '{}' does not fit: all textures together exceed the limit of {} x 2^27 texels",
+                    texture.name, layout::TEXEL_BUFFERS));
+}
 
 uint32_t samplerBits(const Texture& texture, const TextureRef& ref) {
     const Sampler& s = texture.sampler;
@@ -58,12 +44,13 @@ uint32_t samplerBits(const Texture& texture, const TextureRef& ref) {
 
 class MaterialPacker {
   public:
-    MaterialPacker(const Scene& scene, SceneData& data)
-        : scene_(scene), data_(data), placed_(scene.textures.size()) {}
+    MaterialPacker(const Scene& scene, SceneData& data) : scene_(scene), data_(data) {
+        places_.places.resize(scene.textures.size());
+    }
 
-    void pack(const Progress& progress) {
+    TexturePlaces pack() {
         for (const Material& material : scene_.materials) packMaterial(material);
-        writeTexels(progress);
+        return std::move(places_);
     }
 
   private:
@@ -72,27 +59,14 @@ class MaterialPacker {
         data_.features.textures = true;
         const auto index = static_cast<size_t>(ref.texture);
         const Texture& texture = scene_.textures[index];
-        if (!placed_[index]) placed_[index] = places_.place(texture);
+        std::optional<TexturePlaces::Place>& place = places_.places[index];
+        if (!place) place = placed(texture, places_);
         const auto result = static_cast<uint32_t>(data_.textureRefs.size() / layout::TEXTURE_REF_TEXELS);
-        data_.textureRefs.push_back(bits(ref.rowU, placed_[index]->firstTexel()));
+        data_.textureRefs.push_back(
+            bits(ref.rowU, place->buffer << layout::TEXEL_BUFFER_SHIFT | place->first));
         data_.textureRefs.push_back(bits(ref.rowV, samplerBits(texture, ref)));
         data_.textureRefs.emplace_back(texture.width, texture.height, mipLevelCount(texture), 0);
         return result;
-    }
-
-    /// Each texture's levels are made by one thread.
-    void writeTexels(const Progress& progress) {
-        for (size_t i = 0; i < data_.texels.size(); ++i) data_.texels[i].resize(places_.used()[i]);
-        std::atomic<size_t> done = 0;
-        tbb::parallel_for(size_t{0}, placed_.size(), [&](size_t i) {
-            if (const auto& place = placed_[i]) {
-                const Texture& texture = scene_.textures[i];
-                writeMipLevels(
-                    texture,
-                    std::span(data_.texels[place->buffer]).subspan(place->first, mipTexelCount(texture)));
-            }
-            progress.at(++done, placed_.size());
-        });
     }
 
     static uint32_t flagBits(const Material& m) {
@@ -176,13 +150,26 @@ class MaterialPacker {
     const Scene& scene_;
     SceneData& data_;
     TexturePlaces places_;
-    std::vector<std::optional<PlacedTexture>> placed_;
 };
 
 }  // namespace
 
-void packMaterials(const Scene& scene, SceneData& data, const Progress& progress) {
-    MaterialPacker(scene, data).pack(progress);
+TexturePlaces packMaterials(const Scene& scene, SceneData& data) {
+    return MaterialPacker(scene, data).pack();
+}
+
+void fillTexels(const TexturePlaces& places, const Scene& scene, SceneData& data, const Progress& progress) {
+    for (size_t i = 0; i < data.texels.size(); ++i) data.texels[i].resize(places.used[i]);
+    std::atomic<size_t> done = 0;
+    // Each texture's levels are made by one thread.
+    tbb::parallel_for(size_t{0}, scene.textures.size(), [&](size_t i) {
+        if (const auto& place = places.places[i]) {
+            const Texture& texture = scene.textures[i];
+            writeMipLevels(
+                texture, std::span(data.texels[place->buffer]).subspan(place->first, mipTexelCount(texture)));
+        }
+        progress.at(++done, scene.textures.size());
+    });
 }
 
 }  // namespace limpid::scene

@@ -9,7 +9,7 @@ namespace limpid::scene {
 
 /// Runs both, and throws what `first` threw, or else `second`, once both have returned.
 /// tbb::parallel_invoke() would cancel the other one: TBB's loops in it would return before they are done,
-/// without telling it, and it would go on with what is not there.
+/// without telling it, and it would continue with results that were never computed.
 template <typename First, typename Second>
 void runBoth(const First& first, const Second& second) {
     const auto kept = [](const auto& function, std::exception_ptr& fault) {

@@ -14,8 +14,9 @@ bool hasVertexData(const Scene& scene) {
     });
 }
 
-void packMaterialsAndTables(const Scene& scene, SceneData& data, const Progress& progress) {
-    packMaterials(scene, data, progress);
+void fillTexelsAndTables(const TexturePlaces& places, const Scene& scene, SceneData& data,
+                         const Progress& progress) {
+    fillTexels(places, scene, data, progress);
     if (data.features.specular) fillGgxTable(data.ggxTable);
     if (data.features.sheen) fillSheenTable(data.ggxTable);
     if (data.features.roughGlass) fillDielectricTable(data.dielectricTable);
@@ -50,7 +51,8 @@ uint64_t SceneData::byteCount() const {
 SceneData buildSceneData(const Scene& scene, const Progress& progress, std::optional<bool> hasLightTree) {
     SceneData data;
     data.features.vertexData = hasVertexData(scene);
-    runBoth([&] { packMaterialsAndTables(scene, data, progress.part(0.0, 0.3)); },
+    const TexturePlaces places = packMaterials(scene, data);
+    runBoth([&] { fillTexelsAndTables(places, scene, data, progress.part(0.0, 0.3)); },
             [&] { packGeometry(scene, data, progress.part(0.0, 0.9)); });
     progress.at(0.9);
     packLights(scene, data, hasLightTree);

@@ -1,12 +1,10 @@
 // Pixel by pixel, what denoisers read of a file's layers. Private to src/shot: users include shot_frame.h.
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <optional>
 #include <vector>
 
+#include "base/for_each_index.h"
 #include "denoise/api/host_frame.h"
 #include "shot/frame/shot_frame.h"
 
@@ -17,10 +15,7 @@ inline constexpr float largestHalf = 65504.0f;
 /// Calls action(p) for each of `count` pixels, on all cores.
 template <typename Action>
 void forEachPixel(size_t count, Action action) {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 4096),
-                      [&](const tbb::blocked_range<size_t>& range) {
-                          for (size_t p = range.begin(); p < range.end(); ++p) action(p);
-                      });
+    forEachIndex(count, action);
 }
 
 /// Of Rec. 709 primaries.

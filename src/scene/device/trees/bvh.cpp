@@ -1,7 +1,6 @@
 #include "scene/device/trees/bvh.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/for_each_index.h"
 #include "scene/device/trees/collapse.h"
 #include "scene/device/trees/reinsertion.h"
 
@@ -45,7 +45,7 @@ void quantise(BvhNode& node, uint32_t child, const Aabb& box) {
 }
 
 /// Writes the wide nodes of a collapsed tree, and the order of primitives in their leaves. Small subtrees are
-/// written by others before, each to arrays of its own.
+/// written by other WideBuilders before, each to arrays of its own.
 class WideBuilder {
   public:
     /// Subtrees of up to `partSize` leaves are in `parts`, in the order of a traversal.
@@ -128,11 +128,11 @@ class WideBuilder {
 };
 
 /// Subtrees of up to so many leaves are written by one thread.
-constexpr uint32_t partSize = 1u << 15;
+constexpr uint32_t leavesOfAPart = 1u << 15;
 
-/// The largest subtrees of up to `partSize` leaves, in the order of a traversal.
+/// The largest subtrees of up to `leavesOfAPart` leaves, in the order of a traversal.
 void findParts(const Collapse& collapse, uint32_t binary, std::vector<uint32_t>& parts) {
-    if (collapse.leavesBelow(binary) <= partSize) return parts.push_back(binary);
+    if (collapse.leavesBelow(binary) <= leavesOfAPart) return parts.push_back(binary);
     for (const uint32_t child : collapse.childrenOf(binary)) {
         if (!collapse.becomesLeaf(child)) findParts(collapse, child, parts);
     }
@@ -210,9 +210,14 @@ Bvh wideBvh(const BinaryTree& binary, uint32_t maxLeafSize) {
     });
     Bvh bvh;
     bvh.bounds = binary[0].bounds;
-    bvh.nodes.reserve(binary.size() / 4 + 1);
-    bvh.order.reserve(binary.size() / 2 + 1);
-    WideBuilder builder(collapse, bvh, partSize, parts);
+    size_t nodes = 2 * parts.size() + 64, entries = 64;  // there are few above the parts
+    for (const Bvh& part : parts) {
+        nodes += part.nodes.size();
+        entries += part.order.size();
+    }
+    bvh.nodes.reserve(nodes);
+    bvh.order.reserve(entries);
+    WideBuilder builder(collapse, bvh, leavesOfAPart, parts);
     bvh.stackSize = builder.emit(0);
     builder.fillParts();
     return bvh;
@@ -237,14 +242,11 @@ Bvh buildTriangleBvh(std::span<const Corners> triangles, const std::vector<bool>
     References references;
     references.reserve(triangles.size() + most);
     references.resize(triangles.size());
-    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(triangles.size()), 4096),
-                      [&](const tbb::blocked_range<uint32_t>& range) {
-                          for (uint32_t i = range.begin(); i < range.end(); ++i) {
-                              Aabb box;
-                              for (const vec3& corner : triangles[i]) box.grow(corner);
-                              references[i] = {box, i};
-                          }
-                      });
+    forEachIndex(triangles.size(), [&](size_t i) {
+        Aabb box;
+        for (const vec3& corner : triangles[i]) box.grow(corner);
+        references[i] = {box, static_cast<uint32_t>(i)};
+    });
     const Splits splits{triangles, divisible, static_cast<uint32_t>(most)};
     BinaryTree binary = buildBinaryTree(std::move(references), maxSahDepth, splits, progress.part(0.0, 0.6));
     reinsert(binary, roundsFor(triangles.size()), progress.part(0.6, 1.0));

@@ -7,6 +7,8 @@
 #include <array>
 #include <bit>
 
+#include "base/for_each_index.h"
+
 namespace limpid::scene {
 namespace {
 
@@ -59,11 +61,11 @@ class Reinserter {
 
     std::vector<uint32_t> largest() const {
         // Numbers that are smaller the larger the box is, since the bits of positive floats grow with them.
-        RawVector<uint64_t> all(tree_.size() - 3);
-        const tbb::blocked_range<size_t> nodesBelow(3, tree_.size(), 4096);
-        tbb::parallel_for(nodesBelow, [&](const tbb::blocked_range<size_t>& range) {
-            for (size_t i = range.begin(); i < range.end(); ++i)
-                all[i - 3] = uint64_t{~std::bit_cast<uint32_t>(tree_[i].bounds.halfArea())} << 32 | i;
+        constexpr size_t firstMoved = 3;  // the root and its children stay
+        RawVector<uint64_t> all(tree_.size() - firstMoved);
+        forEachIndex(all.size(), [&](size_t i) {
+            const size_t node = i + firstMoved;
+            all[i] = uint64_t{~std::bit_cast<uint32_t>(tree_[node].bounds.halfArea())} << 32 | node;
         });
         const size_t count = std::min(all.size(), all.size() / roundShare + 64);
         std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
@@ -154,7 +156,7 @@ class Reinserter {
 }  // namespace
 
 void reinsert(BinaryTree& tree, uint32_t rounds, const Progress& progress) {
-    if (tree.size() < 5) return;
+    if (rounds == 0 || tree.size() < 5) return;
     Reinserter reinserter(tree);
     for (uint32_t round = 1; round <= rounds; ++round) {
         if (reinserter.round(round) == 0) return;
