@@ -192,7 +192,7 @@ void traverse(const Bvh& bvh, const std::vector<Corners>& triangles, uint32_t in
 
 /// Several threads write the nodes of one tree.
 TEST(TriangleBvh, OfManyTrianglesIsWhole) {
-    const std::vector<Corners> triangles = mixedTriangles(80000);
+    const std::vector<Corners> triangles = mixedTriangles(40000);
     for (const bool divisible : {false, true}) {
         const Bvh bvh = buildTriangleBvh(triangles, std::vector<bool>(triangles.size(), divisible));
         Met met{std::vector<int>(bvh.nodes.size()), std::vector<int>(bvh.order.size())};
@@ -231,7 +231,7 @@ TEST(RunBoth, FinishesOneWhenTheOtherThrows) {
 
 /// At any time, with a tree or without one.
 TEST(TriangleBvh, CanBeGivenUp) {
-    const std::vector<Corners> triangles = mixedTriangles(30000);
+    const std::vector<Corners> triangles = mixedTriangles(10000);
     const std::vector<bool> divisible(triangles.size(), true);
     const Progress givenUp = Progress::watched();
     givenUp.cancel();
