@@ -64,8 +64,9 @@ Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDept
 
 /// The same over triangles, with up to four in a leaf. Takes longer, and rays are faster: triangles are split
 /// where `divisible` (by triangle) allows it, so that `order` may have one of them more than once (but no
-/// leaf has), and nodes are moved (reinsertion.h). Trees of more than a million triangles are not split, and
-/// moved less; those of more than eight million are neither. Throws Cancelled as `progress` does.
+/// leaf has), and nodes are moved (reinsertion.h). More than a million triangles are not split, and their
+/// nodes are moved less; those of more than eight million triangles not at all. Throws Cancelled as
+/// `progress` does.
 Bvh buildTriangleBvh(std::span<const Corners> triangles, const std::vector<bool>& divisible,
                      const Progress& progress = {});
 
