@@ -54,7 +54,7 @@ const Scratch& scratch() {
 scene::SceneData pack(const scene::Scene& scene) {
     scene::SceneData data;
     data.features.vertexData = true;
-    scene::packMaterials(scene, data, {});
+    scene::fillTexels(scene::packMaterials(scene, data), scene, data, {});
     scene::packGeometry(scene, data, {});
     scene::packLights(scene, data);
     return data;
