@@ -45,7 +45,7 @@ constexpr double gestureSeconds = 1.0 / 60;  ///< between two gestures of a hand
 class BenchViewer {
   public:
     BenchViewer(int port, const std::string& token, const std::string& codec) : session_(port, token) {
-        say({{"type", "start"}, {"codecs", {codec}}});
+        say({{"type", "start"}, {"codecs", codec == "vp9" ? json{"vp9", "jpeg"} : json{"jpeg"}}});
     }
 
     void steer() {

@@ -63,8 +63,9 @@ class Mean {
 class Visitor {
   public:
     Visitor(int port, std::mt19937& random) : session_(port, token), endsBadly_(random() % 2 == 0) {
-        session_.sendText(random() % 2 == 0 ? R"({"type":"start","codecs":["vp9"]})"
-                                            : R"({"type":"start","codecs":["jpeg"]})");
+        constexpr std::array codecs{R"(["vp9"])", R"(["jpeg"])", R"(["vp9","jpeg"])"};
+        session_.sendText(
+            fmt::format(R"({{"type":"start","codecs":{}}})", codecs.at(random() % codecs.size())));
     }
     ~Visitor() {
         // Half a message, and the connection is cut.

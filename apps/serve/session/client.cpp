@@ -89,7 +89,7 @@ bool Client::receive(std::string_view part, bool last) {
 void Client::handle(std::string_view text) {
     ClientMessage message = parseMessage(text);
     uint64_t number = 0;
-    std::visit(Overloaded{[&](const Start& start) { streamer_.start(stream_, start.vp9); },
+    std::visit(Overloaded{[&](const Start& start) { streamer_.start(stream_, start.vp9, start.jpegFirst); },
                           [&](const Received& received) { streamer_.received(stream_, received.frame); },
                           [&](Edit& edit) { number = this->edit(std::move(edit.changes), text.size()); },
                           [&](const studio::Gesture& gesture) { number = session_.steer(gesture); },

@@ -113,11 +113,15 @@ Edit editOf(const json& message) {
 }
 
 Start startOf(const json& message) {
+    Start start;
+    bool jpeg = false;
     for (const json& codec : message.at("codecs")) {
-        if (codec == "vp9") return {true};
-        if (codec == "jpeg") return {false};
+        start.vp9 |= codec == "vp9" && !jpeg;
+        jpeg |= codec == "jpeg";
     }
-    throw UsageError("none of the codecs is known");
+    if (!start.vp9 && !jpeg) throw UsageError("none of the codecs is known");
+    start.jpegFirst = start.vp9 && jpeg;
+    return start;
 }
 
 ClientMessage messageOf(const json& message) {

@@ -23,7 +23,8 @@ inline constexpr uint64_t maxPixels = uint64_t{1} << 24;
 enum class Codec : uint8_t { Vp9 = 1, Jpeg = 2, Png = 3, Motion = 4 };
 
 struct Start {
-    bool vp9 = false;  ///< false: JPEG
+    bool vp9 = false;        ///< false: JPEG
+    bool jpegFirst = false;  ///< JPEG until the encoder of the video is ready
 };
 struct Received {
     uint32_t frame = 0;

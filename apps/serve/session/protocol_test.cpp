@@ -15,7 +15,10 @@ T content(const char* text) {
 
 TEST(Protocol, ReadsEveryMessage) {
     EXPECT_TRUE(content<Start>(R"({"type":"start","codecs":["av1","vp9","jpeg"]})").vp9);
+    EXPECT_TRUE(content<Start>(R"({"type":"start","codecs":["vp9","jpeg"]})").jpegFirst);
+    EXPECT_FALSE(content<Start>(R"({"type":"start","codecs":["vp9"]})").jpegFirst);
     EXPECT_FALSE(content<Start>(R"({"type":"start","codecs":["jpeg","vp9"]})").vp9);
+    EXPECT_FALSE(content<Start>(R"({"type":"start","codecs":["jpeg","vp9"]})").jpegFirst);
     EXPECT_EQ(content<Received>(R"({"type":"received","frame":4294967295})").frame, 4294967295u);
     EXPECT_EQ(content<Edit>(R"({"type":"edit","changes":{"exposure":1.5}})").changes.at("exposure"), 1.5);
     EXPECT_EQ(content<Open>(R"({"type":"open","scene":"builtin:cornell"})").scene, "builtin:cornell");

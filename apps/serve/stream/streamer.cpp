@@ -81,13 +81,14 @@ void Streamer::remove(ClientId id) {
     clients_.erase(id);
 }
 
-void Streamer::start(ClientId id, bool vp9) {
+void Streamer::start(ClientId id, bool vp9, bool jpegFirst) {
     {
         const std::lock_guard lock(mutex_);
         const auto found = clients_.find(id);
         if (found == clients_.end()) return;
         ++found->second.starts;
         found->second.vp9 = vp9;
+        found->second.jpegFirst = jpegFirst;
         // A client that starts again, say with the other codec, has nothing, and may never acknowledge what
         // was sent before.
         found->second.sent.clear();
@@ -217,8 +218,8 @@ bool Streamer::streamPicture(int lane, const studio::Shown& shown) {
     auto picture = lane == mainLane ? shown.picture : shown.compared;
     if (lane == mainLane && shown.inspected) picture = inspected_.of(shown.inspected, shown.state.view);
     if (!picture || picture->extent.width == 0) return false;
-    bool sent = encodeVideo(lane, shown, picture);
-    sent |= encodeJpegs(lane, shown, picture);
+    bool sent = encodeJpegs(lane, shown, picture);
+    sent |= encodeVideo(lane, shown, picture);
     sent |= encodeStills(lane, shown, picture);
     return sent;
 }
@@ -266,11 +267,17 @@ std::vector<Streamer::Recipient> Streamer::recipients(int number, Condition cond
     return result;
 }
 
+/// An encoder takes 0.1 to 0.2 s for its first frame: the first picture of the first client comes without it.
+bool Streamer::takesVideo(const Client& client, const Lane& lane, int number) const {
+    const bool encodes = videos_[static_cast<size_t>(number)].encoder.has_value();
+    return client.vp9 && (encodes || !client.jpegFirst || !lane.joins);
+}
+
 /// Those that do not have this picture.
-std::vector<Streamer::Recipient> Streamer::ready(int number, bool vp9,
+std::vector<Streamer::Recipient> Streamer::ready(int number, bool video,
                                                  const std::shared_ptr<const void>& what) const {
     return recipients(number, [&](const Client& client, const Lane& lane) {
-        return client.vp9 == vp9 && lane.last != what;
+        return takesVideo(client, lane, number) == video && lane.last != what;
     });
 }
 

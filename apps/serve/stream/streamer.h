@@ -42,7 +42,8 @@ class Streamer {
     using ClientId = uint64_t;
     ClientId add();
     void remove(ClientId id);
-    void start(ClientId id, bool vp9);
+    /// The client has no picture. `jpegFirst`: it shows JPEG, too, and gets it while no video is encoded yet.
+    void start(ClientId id, bool vp9, bool jpegFirst = false);
     /// The client has received a frame; unknown numbers are ignored.
     void received(ClientId id, uint32_t frame);
     /// What is to be sent to a client now, if anything.
@@ -72,7 +73,7 @@ class Streamer {
     };
     struct Client {
         uint32_t starts = 0;  ///< how often it has started
-        bool vp9 = false;
+        bool vp9 = false, jpegFirst = false;
         std::array<Lane, laneCount> lanes;
         std::map<uint32_t, Sent> sent;
         uint32_t frames = 0;
@@ -121,7 +122,8 @@ class Streamer {
     bool answerStillRequests(const studio::Shown& shown);
     template <typename Condition>
     std::vector<Recipient> recipients(int lane, Condition condition) const;
-    std::vector<Recipient> ready(int lane, bool vp9, const std::shared_ptr<const void>& what) const;
+    bool takesVideo(const Client& client, const Lane& lane, int number) const;
+    std::vector<Recipient> ready(int lane, bool video, const std::shared_ptr<const void>& what) const;
     void hand(const std::vector<Recipient>& recipients, int lane, FrameHeader header, const Bytes& bytes,
               const std::shared_ptr<const void>& what);
     Bytes stillOf(const std::shared_ptr<const studio::Picture>& picture);

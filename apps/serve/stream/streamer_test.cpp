@@ -34,9 +34,9 @@ class StreamerTest : public testing::Test {
   protected:
     ~StreamerTest() override { streamer.stop(); }
 
-    Streamer::ClientId client(bool vp9) {
+    Streamer::ClientId client(bool vp9, bool jpegFirst = false) {
         const auto id = streamer.add();
-        streamer.start(id, vp9);
+        streamer.start(id, vp9, jpegFirst);
         return id;
     }
     void publish(bool computing = true) { session.show(wavePicture(extent, time++), computing); }
@@ -353,6 +353,25 @@ TEST_F(StreamerTest, ANewcomerDoesNotWaitLongForAKeyFrame) {
     ASSERT_TRUE(packet);
     EXPECT_TRUE(packet->header.key);
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(350));
+}
+
+/// The first picture does not wait for the encoder to start.
+TEST_F(StreamerTest, TheVideoBeginsWithAJpeg) {
+    const auto first = client(true, true);
+    for (const Codec expected : {Codec::Jpeg, Codec::Vp9, Codec::Vp9}) {
+        publish();
+        const auto packet = next(first);
+        ASSERT_TRUE(packet);
+        EXPECT_EQ(packet->header.codec, expected);
+        EXPECT_EQ(packet->header.key, packet->header.snapshot < 3) << packet->header.snapshot;
+        streamer.received(first, packet->header.frame);
+    }
+    const auto later = client(true, true);
+    publish();
+    const auto packet = next(later);
+    ASSERT_TRUE(packet);
+    EXPECT_EQ(packet->header.codec, Codec::Vp9) << "the encoder runs already";
+    EXPECT_TRUE(packet->header.key);
 }
 
 TEST_F(StreamerTest, AClientThatLostFramesGetsTheKeyFrameWhenItIsDue) {
