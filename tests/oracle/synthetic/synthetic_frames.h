@@ -3,6 +3,7 @@
 // wall, a sphere, a box that rotates and slides, a small emitter, and the sky.
 #pragma once
 
+#include <compare>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct SyntheticOptions {
     bool noise = true;
     bool orthographic = false;
     double scale = 1.0;  ///< factor of every length
+
+    auto operator<=>(const SyntheticOptions&) const = default;
 };
 
 class SyntheticScene {
@@ -24,6 +27,7 @@ class SyntheticScene {
     enum Id : uint32_t { Floor, Wall, Sphere, Box, Emitter };
 
     explicit SyntheticScene(const SyntheticOptions& options) : options_(options) {}
+    const SyntheticOptions& options() const { return options_; }
 
     /// Frames are numbered from 0, which has no previous frame. Every layer is rounded to float32 once. The
     /// same arguments give the same frame; other seeds give independent noise. `reflectionMotion` is patchy
