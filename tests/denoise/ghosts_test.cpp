@@ -25,7 +25,7 @@ struct Regions {
 /// Networks take most of the time, and leave so little noise that few draws of it tell their bias.
 uint32_t seedsFor(const denoise::Denoiser& method) {
     if (method.name == std::string_view("film")) return 3;
-    return method.name == std::string_view("nano") ? 6 : 16;
+    return method.name == std::string_view("nano") ? 6 : 8;
 }
 
 /// Returns the mean over the region of (mean - truth)^2 minus the mean's own variance.
