@@ -91,6 +91,24 @@ TEST_F(StudioTest, EditsGesturesAndRequestsChangeThePicture) {
     studio->finish();
 }
 
+TEST_F(StudioTest, AnOpenShutterBlursWhatMovesAtRest) {
+    const auto studio = make(small("builtin:cornell-moving"));
+    const auto sharp = rest(*studio, studio->edit({{"time", 0.5}}));
+    const auto blurred = rest(*studio, studio->edit({{"shutter", 8.0}}));
+    EXPECT_NE(blurred->picture->texels, sharp->picture->texels);
+    EXPECT_EQ(blurred->facts.samplesInMean, 2u);
+    const auto earlier = rest(*studio, studio->edit({{"shutter_position", "end"}}));
+    EXPECT_NE(earlier->picture->texels, blurred->picture->texels);
+    const auto again = rest(*studio, studio->edit({{"shutter_position", "center"}}));
+    EXPECT_EQ(again->picture->texels, blurred->picture->texels);
+    // Both sides of a comparison see the scene at one moment.
+    const auto compared = rest(*studio, studio->edit({{"compare", "ao"}}));
+    EXPECT_EQ(compared->picture->texels, sharp->picture->texels);
+    rest(*studio, studio->edit({{"compare", "nothing"}}));
+    EXPECT_EQ(rest(*studio, studio->edit({{"shutter", 0.0}}))->picture->texels, sharp->picture->texels);
+    studio->finish();
+}
+
 /// Compiling takes seconds on some drivers. Nobody should take that for a program that hangs.
 TEST_F(StudioTest, ShadersThatAreCompiledAreTold) {
     const auto studio = make(small());

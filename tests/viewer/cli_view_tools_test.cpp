@@ -332,6 +332,29 @@ TEST_F(ViewToolsTest, LayersGoIntoTheFile) {
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 
+TEST_F(ViewToolsTest, MotionBlurIsOnTheCommandLine) {
+    DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 6");
+    const std::string sharp = viewer.settledPicture();
+    viewer.type("shutter", "4.1");
+    viewer.waitFor("the number", [&] { return viewer.value("shutter") == "4.1"; });
+    EXPECT_NE(viewer.settledPicture(), sharp);
+    viewer.click("EXR");
+    viewer.waitFor("a file", [&] { return viewer.fact("message") == "wrote limpid.exr"; });
+    viewer.click("copy command line");
+    viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
+    EXPECT_THAT(viewer.fact("message"), HasSubstr(" --shutter 4.1 "));
+    const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
+                                     viewer.fact("message").substr(7) + " --float");
+    ASSERT_EQ(result.code, 0) << result.output;
+    // The window has a running mean, and the program one of sums.
+    const image::Image shown = image::readPicture(path("limpid.exr")).linear,
+                       rendered = image::readPicture(path("frame.exr")).linear;
+    ASSERT_EQ(shown.pixels.size(), rendered.pixels.size());
+    for (size_t i = 0; i < shown.pixels.size(); ++i)
+        ASSERT_NEAR(shown.pixels[i], rendered.pixels[i], 1e-4f * rendered.pixels[i] + 1e-6f) << i;
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
 TEST_F(ViewToolsTest, SeesEverything) {
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3");
     const std::string start = viewer.settledPicture();

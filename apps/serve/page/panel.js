@@ -6,7 +6,7 @@ import {LightDesk} from './lights.js';
 
 const firstSections = ['scene', 'camera', 'light', 'method', 'look', 'compare', 'inspect'];
 const openAtFirst = ['scene', 'method', 'look'];
-const onlyWithClip = ['playing', 'time'];
+const onlyWithClip = ['playing', 'time', 'shutter', 'shutter_position'];
 const onlyWithPass = ['image', 'view.channels', 'view.stops', 'view.false_color'];
 // The page sets the first; the others belong to EXR files, which it does not have, and to buttons.
 const hidden = ['viewport', 'layers', 'kept_settings', 'running'];

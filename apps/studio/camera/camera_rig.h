@@ -43,6 +43,7 @@ class CameraRig {
     const FlyCamera& hand() const { return fly_; }
     const scene::Camera& home() const { return home_; }
     bool movesOnPath() const { return path_.has_value(); }
+    const std::optional<scene::CameraPath>& path() const { return path_; }
     /// Of the clip, or at least of the path.
     double duration(const Stage& stage) const;
     /// Options of the command line that choose it; empty if it is free. `start`: those of the first scene's.

@@ -57,13 +57,38 @@ bool LiveRender::differs(const RenderSettings& settings, uint32_t samples) const
 
 void LiveRender::render(Moment moment) {
     if (next_.pipeline.accumulates()) {
-        if (moment.scene || mustReset({camera_, settings_}, {moment.camera, next_})) launches_ = 0;
+        if (blurred_) renderer_->restart();
+        if (blurred_ || moment.scene || mustReset({camera_, settings_}, {moment.camera, next_}))
+            launches_ = 0;
         moment.number = launches_++;
     }
     settings_ = next_;
     camera_ = moment.camera;
+    blurred_ = false;
     renderer_->setReasons(reasons_);
     renderer_->render(std::move(moment));
+    noteFrame();
+}
+
+void LiveRender::renderBlurred(const CameraParams& camera, bool anew,
+                               const std::function<Moment(uint64_t)>& at) {
+    if (anew || !blurred_ || mustReset({camera_, settings_}, {camera, next_})) {
+        renderer_->restart();
+        launches_ = 0;
+    }
+    settings_ = next_;
+    camera_ = camera;
+    blurred_ = true;
+    renderer_->setReasons(reasons_);
+    for (uint32_t sample = 0; sample < samples_; ++sample) {
+        renderer_->moveOn(at(launches_));
+        const uint64_t number = launches_++;
+        renderer_->launch({.stream = number, .first = number, .point = number});
+    }
+    noteFrame();
+}
+
+void LiveRender::noteFrame() {
     hasReasons_ = reasons_;
     startCopy();
     ++version_;

@@ -47,6 +47,10 @@ class LiveRender {
     /// numbers the frames of pipelines that denoise.
     /// Does not wait for the device.
     void render(Moment moment);
+    /// The same for a picture with motion blur: each sample is a launch of its own, which shows the moment
+    /// that `at` returns for its number. `camera`: at the frame's time. `anew`: the mean begins anew, as it
+    /// does with another camera or other settings.
+    void renderBlurred(const CameraParams& camera, bool anew, const std::function<Moment(uint64_t)>& at);
     /// Something is another than it was: samples() of pipelines that denoise count from here.
     void noteChange() { framesOfSame_ = 0; }
     uint64_t framesOfSame() const { return framesOfSame_; }
@@ -78,6 +82,7 @@ class LiveRender {
     uint64_t version() const { return version_; }
 
   private:
+    void noteFrame();
     void startCopy();
 
     gpu::Device& device_;
@@ -95,6 +100,7 @@ class LiveRender {
     std::shared_ptr<const Picture> picture_;  ///< of the last frame; null: nobody has asked for it yet
     CameraParams camera_{};
     bool shown_ = false;
+    bool blurred_ = false;  ///< the last frame
     bool reasons_ = false, hasReasons_ = false;
     uint64_t launches_ = 0;  ///< of the mean
     uint64_t framesOfSame_ = 0;

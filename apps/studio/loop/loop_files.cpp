@@ -46,7 +46,8 @@ void RenderLoop::makeCommand() {
                      .samples = state_.samples,
                      .samplesInMean = main_.samples(),
                      .camera = rig_.option(settings_.startCamera),
-                     .fovDegrees = fovOfLast_};
+                     .fovDegrees = fovOfLast_,
+                     .shutter = blurOfLast_};
     frame.source.lightFile = state_.lights.isChanged() ? lightFile : "";
     CommandLine command = commandLineOf(frame, playback_, pathFile);
     if (rig_.isFree() && rig_.hand().camera().orthographic)

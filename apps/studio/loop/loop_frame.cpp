@@ -7,6 +7,7 @@
 
 #include "image/tonemap.h"
 #include "renderer/frame/reset_rule.h"
+#include "renderer/sequence/sequence.h"
 #include "scene/model/camera.h"
 #include "studio/background/priority.h"
 #include "studio/loop/render_loop.h"
@@ -21,15 +22,23 @@ constexpr double settleSeconds = 0.3;   ///< without a change, after which nothi
 
 }  // namespace
 
-CameraParams RenderLoop::cameraNow() const {
-    return scene::cameraParams(rig_.at(*stage_, playback_.time()), wanted_.extent.width,
-                               wanted_.extent.height);
+CameraParams RenderLoop::cameraAt(double time) const {
+    return scene::cameraParams(rig_.at(*stage_, time), wanted_.extent.width, wanted_.extent.height);
+}
+
+/// The shutter of the next frame; closed if it has no motion blur. A comparison would see the scene at the
+/// instant that it stands at, and frames that play would each show one instant only.
+Shutter RenderLoop::blur() const {
+    const Pipeline& pipeline = wanted_.pipeline;
+    const bool moves = stage_->moves() || rig_.movesOnPath();
+    const bool can = pipeline.accumulates() && !pipeline.takesOneSampleALaunch();
+    return moves && can && !playback_.playing && !state_.comparison.isOn() ? state_.shutter : Shutter{};
 }
 
 /// Returns true if the next picture would differ from the last one, apart from noise. `camera`: with the last
 /// one's extent.
 bool RenderLoop::isOther(const CameraParams& camera) const {
-    return main_.differs(wanted_, state_.samples) || stage_->lightsChanged() ||
+    return main_.differs(wanted_, state_.samples) || stage_->lightsChanged() || blur() != blurOfLast_ ||
            (state_.running && (!sameCamera(camera, main_.camera()) ||
                                (stage_->moves() && playback_.change()) || playback_.playing));
 }
@@ -216,22 +225,46 @@ void RenderLoop::render(const CameraParams& camera) {
         playback_.reset(playback_.time());
     else if (changed)
         playback_.noteOtherSettings();
-    Moment moment = playback_.moment(camera);
     if (stage_->lightsChanged()) playback_.noteOtherSettings();
-    std::optional<Stage::Step> step;
-    if (const auto change = playback_.change(); change && stage_->moves())
-        step = Stage::Step{change->from, change->to};
-    moment.scene = stage_->nextFrame(step, playback_.shownTime());
-    if (comparison_.mustRender(state_, wanted_, camera, moment.scene.has_value()))
-        comparison_.render(*stage_, state_, wanted_, moment, false);
+    // A blurred frame leaves the scene at one of its instants.
+    const Shutter shutter = blur();
+    if (std::exchange(blurOfLast_, shutter) != shutter) playback_.seek(playback_.time());
     main_.setReasons(wantsReasons());
-    main_.render(std::move(moment));
+    if (shutter.isOpen())
+        renderBlurred(camera);
+    else
+        renderSharp(camera);
     fovOfLast_ = state_.fovDegrees;
     playback_.advance(camera, rig_.key());
     flight_.playing = playback_.playing;
     flight_.advance(camera, rig_.key());
     facts_.samplesInMean = main_.accumulates() ? main_.samples() : 0;
     facts_.frames = playback_.frames();
+}
+
+void RenderLoop::renderSharp(const CameraParams& camera) {
+    Moment moment = playback_.moment(camera);
+    std::optional<Stage::Step> step;
+    if (const auto change = playback_.change(); change && stage_->moves())
+        step = Stage::Step{change->from, change->to};
+    moment.scene = stage_->nextFrame(step, playback_.shownTime());
+    if (comparison_.mustRender(state_, wanted_, camera, moment.scene.has_value()))
+        comparison_.render(*stage_, state_, wanted_, moment, false);
+    main_.render(std::move(moment));
+}
+
+/// Each sample sees the scene and the camera at another instant of the open shutter.
+void RenderLoop::renderBlurred(const CameraParams& camera) {
+    const SequenceTiming timing{.framesPerSecond = playback_.framesPerSecond, .shutter = blurOfLast_};
+    const double time = playback_.time();
+    const bool anew = stage_->lightsChanged() || playback_.change();
+    main_.renderBlurred(camera, anew, [&](uint64_t launch) {
+        const double instant = shutterInstant(wanted_.seed, 0, launch);
+        const double then = time + offsetDuring(timing, rig_.path(), time, instant);
+        std::optional<Stage::Step> step;
+        if (stage_->moves()) step = Stage::Step{then, then};
+        return Moment{.camera = cameraAt(then), .scene = stage_->nextFrame(step, then)};
+    });
 }
 
 void RenderLoop::noteFrameTime(bool rendered) {

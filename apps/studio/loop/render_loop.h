@@ -98,7 +98,9 @@ class RenderLoop {
     bool reloadShaders();
     void say(const std::string& message);
     bool messageAges();
-    CameraParams cameraNow() const;
+    CameraParams cameraAt(double time) const;
+    CameraParams cameraNow() const { return cameraAt(playback_.time()); }
+    Shutter blur() const;
     bool isOther(const CameraParams& camera) const;
     bool mustRender();
     bool renderWhatIsDue();
@@ -107,6 +109,8 @@ class RenderLoop {
     bool previewsFirst();
     void renderTimed(const CameraParams& camera);
     void render(const CameraParams& camera);
+    void renderSharp(const CameraParams& camera);
+    void renderBlurred(const CameraParams& camera);
     bool overlaps() const;
     void awaitFrame();
     void noteFrameTime(bool rendered);
@@ -194,7 +198,8 @@ class RenderLoop {
     std::optional<std::array<float, 2>> probeAt_;  ///< a probe that waits for a frame with reasons
     std::vector<std::string> toSave_;              ///< extensions of pictures that were asked for
     float fovOfLast_ = 0.0f;                       ///< degrees
-    float speed_ = 1.0f;                           ///< of flying, world units a second
+    Shutter blurOfLast_;
+    float speed_ = 1.0f;  ///< of flying, world units a second
     Clock::time_point lastTimes_{}, lastSources_{}, lastFrame_{};
     bool frameBefore_ = false;
     Clock::time_point messageSince_{};

@@ -73,7 +73,12 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
     result.text += fmt::format(" {} --width {} --height {} --seed {} --jitter {} --spp {}",
                                s.pipeline.options(), s.extent.width, s.extent.height, s.seed,
                                toString(s.jitter), accumulates ? frame.samplesInMean : frame.samples);
-    if (accumulates) result.text += " --progressive";
+    if (frame.shutter.isOpen())  // each sample sees another instant
+        result.text +=
+            fmt::format(" --samples-per-launch 1 --fps {} --shutter {} --shutter-position {}",
+                        playback.framesPerSecond, frame.shutter.open, nameOf(frame.shutter.position));
+    else if (accumulates)
+        result.text += " --progressive";
     if (s.layers) result.text += " --aov all";
     if (s.pathtrace.samplerTea) result.text += " --sampler tea";
     if (frames > 1) result.text += fmt::format(" --frames {} --fps {}", frames, playback.framesPerSecond);

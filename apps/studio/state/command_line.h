@@ -1,9 +1,11 @@
-// The `limpid render` that makes the frame in the window again, to the last bit, on the same device.
+// The `limpid render` that makes the frame in the window again on the same device: to the last bit, but for the
+// rounding of means with motion blur.
 #pragma once
 
 #include <string>
 
 #include "renderer/method/settings.h"
+#include "renderer/sequence/shutter.h"
 #include "scene/load/scene_source.h"
 #include "studio/live/playback.h"
 
@@ -20,6 +22,7 @@ struct ShownFrame {
     uint64_t samplesInMean = 0;  ///< without a denoiser
     std::string camera;          ///< its options, as "--camera 2"; empty: as `playback` has it
     float fovDegrees = 45.0f;
+    Shutter shutter;  ///< closed: no motion blur
 };
 
 struct CommandLine {

@@ -46,6 +46,14 @@ TEST_F(CommandLineTest, AStillHasItsCameraAndSamples) {
     EXPECT_THAT(text(), Not(HasSubstr("--set")));
 }
 
+TEST_F(CommandLineTest, AStillWithMotionBlurHasItsShutter) {
+    frame_.shutter = {0.1, Shutter::Position::End};
+    frames(1, false);
+    EXPECT_THAT(
+        text(),
+        HasSubstr("--spp 24 --samples-per-launch 1 --fps 30 --shutter 0.1 --shutter-position end --anim"));
+}
+
 TEST_F(CommandLineTest, LightsAndLayersAreSaid) {
     frame_.source.lights = {"sun,0,1,0,2", "point,1,2,3,4"};
     frame_.source.background = "1,1,1";

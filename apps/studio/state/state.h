@@ -8,6 +8,7 @@
 #include "image/tone_curve.h"
 #include "renderer/method/denoiser_parts.h"
 #include "renderer/method/settings.h"
+#include "renderer/sequence/shutter.h"
 #include "studio/compare/comparison.h"
 #include "studio/compare/inspector.h"
 #include "studio/state/light_desk.h"
@@ -49,6 +50,7 @@ struct State {
     bool running = true;      ///< frames are rendered as long as they improve the picture
     bool playing = false;     ///< the clip, or the camera's path
     float time = 0.0f;        ///< seconds
+    Shutter shutter;          ///< of a picture that rests (RenderLoop::blur())
     std::string pass;         ///< pass whose images are shown instead of the picture; empty: none
     int image = 0;            ///< index into Facts::images
     InspectorView view;

@@ -392,6 +392,17 @@ void addCamera(std::vector<Entry>& all) {
     all.push_back(number(
         {"time", "camera", "time", "Moment of the animation", "s"}, Kind::Float, 0.0, 1e6, {0.0, 10.0},
         [](State & s) -> auto& { return s.time; }));
+    all.push_back(number(
+        {"shutter", "camera", "shutter",
+         "Motion blur: how long the shutter is open. While nothing plays, by path or direct, without a "
+         "denoiser or a comparison",
+         "frames"},
+        Kind::Float, 0.0, 100.0, {0.0, 2.0}, [](State & s) -> auto& { return s.shutter.open; }));
+    all.push_back(choice(
+        {"shutter_position", "camera", "shutter position",
+         "At the frame's time the shutter opens (start), is halfway (center) or closes (end)"},
+        {Shutter::positionNames.begin(), Shutter::positionNames.end()},
+        [](State & s) -> auto& { return s.shutter.position; }));
 }
 
 void addLook(std::vector<Entry>& all) {
@@ -447,7 +458,8 @@ std::vector<Entry> makeEntries() {
     const State initial;
     // The exposure is measured for each scene.
     const auto fromScene = [](const Field& field) {
-        return field.section == "light" || field.section == "camera" || field.key == "exposure";
+        const bool isCamera = field.section == "camera" && !field.key.starts_with("shutter");
+        return field.section == "light" || isCamera || field.key == "exposure";
     };
     for (Entry& entry : all) {
         if (!fromScene(entry.field)) entry.field.defaultValue = entry.get(initial);

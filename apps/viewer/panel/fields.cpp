@@ -4,7 +4,9 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -50,7 +52,9 @@ void drawNumber(const Drawing& with, const Field& field, json& value) {
     }
     float number = value.get<float>();
     const char* const format = field.unit == "stops" ? "{:.2f}" : field.key == "time" ? "{:.3f}" : "{:.4g}";
-    if (with.controls.slider(field.label.c_str(), number, range, format, unit)) value = number;
+    // The decimal that is meant: 0.1, not 0.100000001490116.
+    if (with.controls.slider(field.label.c_str(), number, range, format, unit))
+        value = std::stod(fmt::format("{}", number));
 }
 
 void drawVector(const Drawing& with, const Field& field, json& value) {
@@ -139,7 +143,8 @@ void endRows() {
 bool isDrawn(const Drawing& with, const Field& field) {
     if (field.kind == Kind::Index) return !listOf(with.facts, field).empty();
     if (field.kind == Kind::Text || field.kind == Kind::Extent || field.kind == Kind::Settings) return false;
-    return (field.key != "time" && field.key != "playing") || with.facts.duration > 0.0;
+    constexpr std::array<std::string_view, 4> onlyWithClip{"playing", "time", "shutter", "shutter_position"};
+    return std::ranges::find(onlyWithClip, field.key) == onlyWithClip.end() || with.facts.duration > 0.0;
 }
 
 void drawField(const Drawing& with, const Field& field) {

@@ -91,7 +91,8 @@ void drawCamera(const Drawing& with) {
     if (!section(with, "camera", false)) return;
     beginRows();
     drawField(with, with.panel.state.halfHeight > 0.0f ? "half_height" : "fov");
-    for (const char* key : {"eye", "target", "up", "playing", "time"}) drawField(with, key);
+    for (const char* key : {"eye", "target", "up", "playing", "time", "shutter", "shutter_position"})
+        drawField(with, key);
     drawActions(with, "camera");
     endRows();
 }

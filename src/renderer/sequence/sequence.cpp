@@ -1,6 +1,19 @@
 #include "renderer/sequence/sequence.h"
 
+#include <algorithm>
+
 namespace limpid {
+
+double offsetDuring(const SequenceTiming& timing, const std::optional<scene::CameraPath>& path, double time,
+                    double instant) {
+    const auto isOtherShot = [&](double other) {
+        return path && path->cutBetween(std::min(time, other), std::max(time, other));
+    };
+    double offset = timing.shutter.offset(instant) / timing.framesPerSecond;
+    if (isOtherShot(time + offset)) offset = -offset;
+    if (isOtherShot(time + offset)) offset = 0.0;
+    return offset;
+}
 
 Sequence::Sequence(const scene::Scene& scene, const scene::SceneData& data, scene::Camera camera,
                    std::optional<scene::CameraPath> path, const SequenceTiming& timing,
@@ -32,11 +45,7 @@ Moment Sequence::moment(uint64_t frame, gpu::Extent extent) const {
 }
 
 Moment Sequence::momentDuring(uint64_t frame, double instant, gpu::Extent extent) const {
-    const double time = timing_.timeOf(frame);
-    double offset = timing_.shutter.offset(instant) / timing_.framesPerSecond;
-    if (isOtherShot(time, time + offset)) offset = -offset;
-    if (isOtherShot(time, time + offset)) offset = 0.0;
-    return momentAt(frame, offset, extent);
+    return momentAt(frame, offsetDuring(timing_, path_, timing_.timeOf(frame), instant), extent);
 }
 
 }  // namespace limpid

@@ -1,7 +1,6 @@
 // A scene over time: the point in time that each frame of a sequence shows.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -22,6 +21,12 @@ struct SequenceTiming {
     double timeOf(uint64_t frame) const { return start + static_cast<double>(frame) / framesPerSecond; }
 };
 
+/// From a frame's time to what a launch of it sees, seconds: `instant` of the open shutter (shutter.h). At a
+/// cut of the camera path, the shutter sees the frame's own shot only: instants beyond it are mirrored at the
+/// frame's time.
+double offsetDuring(const SequenceTiming& timing, const std::optional<scene::CameraPath>& path, double time,
+                    double instant);
+
 /// Frames can be requested in any order: each also contains the state of the previous frame.
 class Sequence {
   public:
@@ -35,9 +40,8 @@ class Sequence {
     Moment moment(uint64_t frame, gpu::Extent extent) const;
     /// Whether pictures have motion blur: momentDuring() then takes the place of moment().
     bool isBlurred() const { return timing_.shutter.isOpen() && (animator_ || path_); }
-    /// The state while the shutter is open for a frame, at `instant` of shutter.h. Motion is that of one
-    /// frame's time. At a cut of the camera path, the shutter sees the frame's own shot only: instants beyond
-    /// it are mirrored at the frame's time.
+    /// The state while the shutter is open for a frame, offsetDuring() from its time. Motion is that of one
+    /// frame's time.
     Moment momentDuring(uint64_t frame, double instant, gpu::Extent extent) const;
     const std::optional<scene::CameraPath>& path() const { return path_; }
     /// The camera alone, at the frame's time.
@@ -48,7 +52,6 @@ class Sequence {
   private:
     CameraParams cameraAt(double time, gpu::Extent extent) const;
     bool isCut(double before, double now) const { return path_ && path_->cutBetween(before, now); }
-    bool isOtherShot(double a, double b) const { return isCut(std::min(a, b), std::max(a, b)); }
     /// `offset`: from the frame's time, seconds.
     Moment momentAt(uint64_t frame, double offset, gpu::Extent extent) const;
 

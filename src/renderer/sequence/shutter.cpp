@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/hash.h"
 
@@ -13,18 +15,19 @@ double Shutter::offset(double instant) const {
 }
 
 Shutter::Position parseShutterPosition(std::string_view name) {
-    if (name == "start") return Shutter::Position::Start;
-    if (name == "center") return Shutter::Position::Center;
-    if (name == "end") return Shutter::Position::End;
-    throw UsageError(fmt::format("'{}' is not start, center or end", name));
+    const auto found = std::ranges::find(Shutter::positionNames, name);
+    if (found == Shutter::positionNames.end())
+        throw UsageError(fmt::format("'{}' is not start, center or end", name));
+    return static_cast<Shutter::Position>(found - Shutter::positionNames.begin());
+}
+
+std::string_view nameOf(Shutter::Position position) {
+    return Shutter::positionNames.at(static_cast<size_t>(position));
 }
 
 std::string toString(const Shutter& shutter) {
     if (!shutter.isOpen()) return "closed";
-    const char* position = shutter.position == Shutter::Position::Start    ? "start"
-                           : shutter.position == Shutter::Position::Center ? "center"
-                                                                           : "end";
-    return fmt::format("{} frames, {}", shutter.open, position);
+    return fmt::format("{} frames, {}", shutter.open, nameOf(shutter.position));
 }
 
 double shutterInstant(uint32_t seed, uint64_t frame, uint64_t launch) {

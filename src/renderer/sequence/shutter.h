@@ -2,6 +2,7 @@
 // taken.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@ namespace limpid {
 struct Shutter {
     /// Where the open shutter lies: it opens at the frame's time, is centred on it, or closes at it.
     enum class Position { Start, Center, End };
+    static constexpr std::array<std::string_view, 3> positionNames{"start", "center", "end"};
 
     double open = 0.0;  ///< frames, 0 to 100; 0.5 is a film camera's 180 degrees; 0: no motion blur
     Position position = Position::Center;
@@ -22,7 +24,8 @@ struct Shutter {
     bool operator==(const Shutter&) const = default;
 };
 
-/// "start", "center" or "end". Throws UsageError for anything else.
+std::string_view nameOf(Shutter::Position position);
+/// One of Shutter::positionNames. Throws UsageError for anything else.
 Shutter::Position parseShutterPosition(std::string_view name);
 /// For records and messages: "closed", or like "0.5 frames, center".
 std::string toString(const Shutter& shutter);
