@@ -277,6 +277,8 @@ def render_sequence(
     fps: float = 30.0,
     animation: str | int | None = None,
     camera_path: _Path | None = None,
+    shutter: float = 0.0,
+    shutter_position: str = "center",
     seed: int = 0,
     denoiser: str | None = None,
     parameters: Mapping[str, float] | None = None,

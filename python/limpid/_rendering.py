@@ -95,18 +95,21 @@ def render(scene, width, height, spp=64, **options):
 
 
 def render_sequence(scene, width, height, frames, spp=1, *, first=0, fps=30.0, animation=None, camera_path=None,
-                    **options):
+                    shutter=0.0, shutter_position="center", **options):
     """Path-traces the frames of a moving scene. A generator that yields for each frame what render() returns.
 
     frames: number of frames. first: the first of them that is rendered. fps: frames per second.
     animation: name or number of one of the scene's clips, "all", or "none" for a static scene; default: the first
         clip, if there is one.
     camera_path: "orbit", "dolly", "shake", or a JSON file (docs/animation.md).
+    shutter: motion blur: how long the shutter is open, in frames, 0 to 100; each sample sees another instant. Without a
+        denoiser only. The camera's matrices are those at the frame's time.
+    shutter_position: at the frame's time the shutter opens ("start"), is halfway ("center") or closes ("end").
     options: those of render(). A denoiser with a history keeps it from frame to frame.
     """
     first = _arrays.number("first", first, 0, 1000000)
     renderer = _Renderer(scene, width, height, spp, default_jitter="off", fps=fps, frames=frames, animation=animation,
-                         camera_path=camera_path, **options)
+                         camera_path=camera_path, shutter=shutter, shutter_position=shutter_position, **options)
     return (renderer.render(frame) for frame in range(first, frames))
 
 
@@ -120,7 +123,8 @@ class _Renderer:
 
     def __init__(self, scene, width, height, spp, *, default_jitter, seed=0, denoiser=None, parameters=None,
                  device=None, environment=None, camera=None, eye=None, target=None, fov=None, jitter=None,
-                 weights=None, asset_root=None, fps=30.0, frames=1, animation="none", camera_path=None):
+                 weights=None, asset_root=None, fps=30.0, frames=1, animation="none", camera_path=None, shutter=0.0,
+                 shutter_position="center"):
         for name, value, least, most in (("width", width, 1, 65535), ("height", height, 1, 65535),
                                          ("spp", spp, 1, 1 << 24), ("frames", frames, 1, 1000000),
                                          ("seed", seed, 0, 2**32 - 1)):
@@ -134,7 +138,8 @@ class _Renderer:
             environment=path("environment", environment), camera=_text(camera), eye=_vector("eye", eye),
             target=_vector("target", target), fov=0.0 if fov is None else float(fov), jitter=str(jitter),
             weights=path("weights", weights), asset_root=path("asset_root", asset_root), fps=float(fps), frames=frames,
-            animation=_text(animation), camera_path=path("camera_path", camera_path))
+            animation=_text(animation), camera_path=path("camera_path", camera_path), shutter=float(shutter),
+            shutter_position=str(shutter_position))
         with watched():
             own(self, _module().Renderer(handle_of(_devices.get(text_of(device))), options))
 

@@ -194,6 +194,8 @@ RenderOptions optionsOf(const py::kwargs& given) {
     take("weights", o.weights);
     take("asset_root", o.source.assetRoot);
     take("fps", o.timing.framesPerSecond);
+    take("shutter", o.timing.shutter.open);
+    o.timing.shutter.position = limpid::parseShutterPosition(given["shutter_position"].cast<std::string>());
     take("frames", o.frames);
     take("animation", o.animation);
     take("camera_path", o.cameraPath);

@@ -59,6 +59,15 @@ std::optional<scene::CameraPath> pathOf(const RenderOptions& o, const scene::Sce
     return scene::builtinCameraPath(o.cameraPath, scene, camera, o.timing.timeOf(o.frames));
 }
 
+void checkTiming(const SequenceTiming& timing, const Pipeline& pipeline) {
+    if (!(timing.framesPerSecond >= 1e-3 && timing.framesPerSecond <= 1e6))
+        throw UsageError("fps: 0.001 to 1000000 frames per second are possible");
+    if (!(timing.shutter.open >= 0.0 && timing.shutter.open <= 100.0))
+        throw UsageError("shutter: 0 to 100 frames are possible");
+    if (timing.shutter.isOpen() && !pipeline.accumulates())
+        throw UsageError("shutter: denoisers follow sharp surfaces; render without one");
+}
+
 }  // namespace
 
 RenderDevice::RenderDevice(const std::string& select)
@@ -69,9 +78,8 @@ RenderDevice::RenderDevice(const std::string& select)
       }()) {}
 
 SceneRenderer::SceneRenderer(std::shared_ptr<RenderDevice> device, const RenderOptions& o)
-    : device_(std::move(device)), settings_(settingsOf(o)), scene_(sceneOf(o)) {
-    if (!(o.timing.framesPerSecond >= 1e-3 && o.timing.framesPerSecond <= 1e6))
-        throw UsageError("fps: 0.001 to 1000000 frames per second are possible");
+    : device_(std::move(device)), settings_(settingsOf(o)), samples_(o.samples), scene_(sceneOf(o)) {
+    checkTiming(o.timing, settings_.pipeline);
     const std::lock_guard lock(device_->mutex);
     gpu::Device& on = device_->device;
     settings_.networks = loadNetworks(on, settings_.pipeline.denoiser, o.weights, settings_.denoisers);
@@ -89,18 +97,35 @@ SceneRenderer::~SceneRenderer() {
     gpuScene_.reset();
 }
 
-RenderedLayers SceneRenderer::renderLayers(Moment moment, const std::function<void()>& between) {
+/// Each sample sees another instant of the open shutter, as in `limpid render --shutter`.
+void SceneRenderer::renderBlurred(uint64_t frame, const std::function<void()>& between) {
+    for (uint64_t sample = 0; sample < samples_; ++sample) {
+        const double instant = shutterInstant(settings_.seed, frame, sample);
+        Moment moment = sequence_->momentDuring(frame, instant, settings_.extent);
+        if (sample == 0)
+            renderer_->begin(std::move(moment));
+        else
+            renderer_->moveOn(std::move(moment));
+        const uint64_t point = frame * samples_ + sample;
+        renderer_->launch({.stream = point, .first = sample, .point = point, .alone = samples_ == 1});
+        between();
+    }
+}
+
+RenderedLayers SceneRenderer::renderLayers(uint64_t frame, const std::function<void()>& between) {
     // A frame with a denoiser is a single launch, which takes minutes on a CPU.
     renderer_->graph().setInterruption([between] {
         between();
         return false;
     });
-    if (settings_.pipeline.accumulates()) {
+    if (sequence_->isBlurred()) {
+        renderBlurred(frame, between);
+    } else if (settings_.pipeline.accumulates()) {
         // Frames may come in any order, so each has a mean of its own.
-        renderer_->begin(std::move(moment));
+        renderer_->begin(sequence_->moment(frame, settings_.extent));
         while (renderer_->launch()) between();
     } else {
-        renderer_->render(std::move(moment));
+        renderer_->render(sequence_->moment(frame, settings_.extent));
     }
     return renderer_->download();
 }
@@ -108,9 +133,8 @@ RenderedLayers SceneRenderer::renderLayers(Moment moment, const std::function<vo
 std::pair<image::LayeredImage, CameraParams> SceneRenderer::render(uint64_t frame,
                                                                    const std::function<void()>& between) {
     const std::lock_guard lock(device_->mutex);
-    Moment moment = sequence_->moment(frame, settings_.extent);
-    const CameraParams camera = moment.camera;
-    const RenderedLayers layers = renderLayers(std::move(moment), between);
+    const CameraParams camera = sequence_->camera(frame, settings_.extent);
+    const RenderedLayers layers = renderLayers(frame, between);
     return {toLayeredImage(layers, settings_.pipeline.layers(), image::Storage::Float), camera};
 }
 

@@ -57,10 +57,12 @@ class SceneRenderer {
     std::pair<image::LayeredImage, CameraParams> render(uint64_t frame, const std::function<void()>& between);
 
   private:
-    RenderedLayers renderLayers(Moment moment, const std::function<void()>& between);
+    RenderedLayers renderLayers(uint64_t frame, const std::function<void()>& between);
+    void renderBlurred(uint64_t frame, const std::function<void()>& between);
 
     std::shared_ptr<RenderDevice> device_;
     RenderSettings settings_;
+    uint32_t samples_;
     scene::Scene scene_;
     std::optional<scene::GpuScene> gpuScene_;
     std::optional<Sequence> sequence_;

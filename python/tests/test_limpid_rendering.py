@@ -301,6 +301,23 @@ class RenderTest(unittest.TestCase):
         self.assertGreater(after["psnr"], before["psnr"] + 6, (before, after))
         self.assertLess(after["flip"], before["flip"])
 
+    def test_an_open_shutter_blurs_what_moves(self):
+        def frame(**options):
+            return next(limpid.render_sequence("builtin:cornell-moving", 48, 48, frames=2, first=1, fps=4, spp=8,
+                                               device=device(), **options))
+
+        sharp, blurred, short = frame(), frame(shutter=1), frame(shutter=1e-6)
+        np.testing.assert_allclose(short["normal"], sharp["normal"], atol=1e-3)
+        change = np.abs(blurred["normal"] - sharp["normal"]).max(axis=-1)
+        moving = np.abs(sharp["motion"][..., :2]).max(axis=-1) > 1
+        self.assertGreater(moving.sum(), 20)
+        self.assertGreater(change[moving].mean(), 0.05)
+        self.assertLess(change[~moving].mean(), 0.02)
+        for options in {"denoiser": "svgf"}, {"shutter": -1}, {"shutter_position": "middle"}:
+            with self.subTest(options), self.assertRaises(limpid.Error) as caught:
+                frame(**{"shutter": 1, **options})
+            self.assertEqual(caught.exception.code, "invalid_argument")
+
     def test_names_of_scenes_need_not_be_utf_8(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = os.path.join(os.fsencode(folder), b"\xff.obj")

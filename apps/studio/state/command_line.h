@@ -1,5 +1,5 @@
-// The `limpid render` that makes the frame in the window again on the same device: to the last bit, but for the
-// rounding of means with motion blur.
+// The `limpid render` that makes the frame in the window again on the same device: to the last bit, but for
+// the rounding of means with motion blur.
 #pragma once
 
 #include <string>
