@@ -88,8 +88,7 @@ case $test in
         ;;
     fetch_content)
         # Debug compiles faster, and is what no other test builds.
-        configure "$source/tests/embed/consumer" "$own" -D SOURCE="$source" -D CMAKE_BUILD_TYPE=Debug \
-            -D LIMPID_PCH=ON -D LIMPID_UNITY=ON
+        configure "$source/tests/embed/consumer" "$own" -D SOURCE="$source" -D CMAKE_BUILD_TYPE=Debug
         [ "$(cd "$own" && ctest -N | sed -n 's/^Total Tests: //p')" = 0 ] || fail "tests in somebody else's project"
         consumer
         ;;
