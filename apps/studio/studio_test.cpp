@@ -105,7 +105,13 @@ TEST_F(StudioTest, AnOpenShutterBlursWhatMovesAtRest) {
     const auto compared = rest(*studio, studio->edit({{"compare", "ao"}}));
     EXPECT_EQ(compared->picture->texels, sharp->picture->texels);
     rest(*studio, studio->edit({{"compare", "nothing"}}));
-    EXPECT_EQ(rest(*studio, studio->edit({{"shutter", 0.0}}))->picture->texels, sharp->picture->texels);
+    const auto later = rest(*studio, studio->edit({{"time", 0.7}}));
+    EXPECT_NE(later->picture->texels, blurred->picture->texels);
+    EXPECT_EQ(rest(*studio, studio->edit({{"time", 0.5}}))->picture->texels, blurred->picture->texels);
+    const auto closed = rest(*studio, studio->edit({{"shutter", 0.0}}));
+    EXPECT_EQ(closed->picture->texels, sharp->picture->texels);
+    const auto other = rest(*studio, studio->edit({{"shutter_position", "start"}}));
+    EXPECT_EQ(other->facts.framesBegun, closed->facts.framesBegun) << "a closed shutter has no position";
     studio->finish();
 }
 

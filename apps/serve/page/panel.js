@@ -140,9 +140,13 @@ export class Panel {
     control.setChoices([['', 'the picture'], ...names.map(name => [name, name])]);
   }
 
+  isShown(key) {
+    return this.#rows.has(key) && !this.#rows.get(key).element.classList.contains('absent');
+  }
+
   countChanges(name, details) {
     const count = this.store.fields
-        .filter(({key, section}) => section === name && this.#rows.has(key) && this.store.differs(key)).length;
+        .filter(({key, section}) => section === name && this.isShown(key) && this.store.differs(key)).length;
     const place = details.querySelector('.count');
     setText(place, count ? `${count} changed` : '');
     details.classList.toggle('changed', count > 0);

@@ -17,6 +17,8 @@ constexpr double restSeconds = 0.25;  ///< after which a picture is sent lossles
 constexpr double betweenKeys = 0.5, betweenKeysForNewcomers = 0.1;
 constexpr double longestWait = 0.5;  ///< seconds
 constexpr double highestBitsPerPixel = 0.16;
+constexpr uint32_t lowestBitrate = 300'000;  ///< bits a second
+constexpr double highestBitrate = 6e7;
 constexpr double framesASecond = 60.0;
 constexpr uint32_t maxThreads = 16;
 
@@ -218,8 +220,16 @@ bool Streamer::streamPicture(int lane, const studio::Shown& shown) {
     auto picture = lane == mainLane ? shown.picture : shown.compared;
     if (lane == mainLane && shown.inspected) picture = inspected_.of(shown.inspected, shown.state.view);
     if (!picture || picture->extent.width == 0) return false;
-    bool sent = encodeJpegs(lane, shown, picture);
+    Video& video = videos_[static_cast<size_t>(lane)];
+    // An encoder takes 0.1 to 0.2 s to start: the first picture does not wait for it.
+    const bool starts = !video.encoder;
+    bool sent = starts && encodeJpegs(lane, shown, picture);
+    if (sent && wantsVideo()) {
+        wake_();
+        encoderFor(video, *picture, lowestBitrate);
+    }
     sent |= encodeVideo(lane, shown, picture);
+    sent |= !starts && encodeJpegs(lane, shown, picture);
     sent |= encodeStills(lane, shown, picture);
     return sent;
 }
@@ -267,17 +277,18 @@ std::vector<Streamer::Recipient> Streamer::recipients(int number, Condition cond
     return result;
 }
 
-/// An encoder takes 0.1 to 0.2 s for its first frame: the first picture of the first client comes without it.
-bool Streamer::takesVideo(const Client& client, const Lane& lane, int number) const {
-    const bool encodes = videos_[static_cast<size_t>(number)].encoder.has_value();
-    return client.vp9 && (encodes || !client.jpegFirst || !lane.joins);
+bool Streamer::wantsVideo() const {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(clients_, [](const auto& entry) { return entry.second.vp9; });
 }
 
 /// Those that do not have this picture.
 std::vector<Streamer::Recipient> Streamer::ready(int number, bool video,
                                                  const std::shared_ptr<const void>& what) const {
+    const bool encodes = videos_[static_cast<size_t>(number)].encoder.has_value();
     return recipients(number, [&](const Client& client, const Lane& lane) {
-        return takesVideo(client, lane, number) == video && lane.last != what;
+        const bool takesVideo = client.vp9 && (encodes || !client.jpegFirst);
+        return takesVideo == video && lane.last != what;
     });
 }
 
@@ -290,7 +301,7 @@ void Streamer::hand(const std::vector<Recipient>& recipients, int number, FrameH
         Lane& lane = found->second.lanes[static_cast<size_t>(number)];
         lane.waiting = Packet{header, bytes, Clock::now()};
         lane.last = what;
-        lane.joins = false;
+        lane.joins = lane.joins && header.codec == Codec::Jpeg;
         lane.still = header.lossless;
         if (header.codec == Codec::Vp9) lane.synced = true;
     }
@@ -337,6 +348,16 @@ bool Streamer::isDue(const Pace& pace, std::shared_ptr<const void>& seen,
     return pace.isDue(Clock::now(), std::exchange(seen, what) != what);
 }
 
+/// The encoder of pictures of this size: it is started if there is none.
+VideoEncoder& Streamer::encoderFor(Video& video, const studio::Picture& picture, uint32_t bitsPerSecond) {
+    if (!video.encoder) {
+        video.encoder.emplace(picture.extent, bitsPerSecond, threadsFor(settings_));
+        video.lastKey = {};
+    }
+    video.encoder->setBitrate(bitsPerSecond);
+    return *video.encoder;
+}
+
 bool Streamer::encodeVideo(int number, const studio::Shown& shown,
                            const std::shared_ptr<const studio::Picture>& picture) {
     std::vector<Recipient> to = ready(number, true, picture);
@@ -349,10 +370,9 @@ bool Streamer::encodeVideo(int number, const studio::Shown& shown,
     if (to.empty()) return false;
     const double highest =
         highestBitsPerPixel * framesASecond * picture->extent.width * picture->extent.height;
-    const auto bits = static_cast<uint32_t>(std::clamp(shareOf(to) * highest, 3e5, 6e7));
-    if (!video.encoder) video.encoder.emplace(picture->extent, bits, threadsFor(settings_));
-    video.encoder->setBitrate(bits);
-    VideoEncoder::Frame frame = video.encoder->encode(*picture, key, seconds);
+    const auto bits =
+        static_cast<uint32_t>(std::clamp(shareOf(to) * highest, double{lowestBitrate}, highestBitrate));
+    VideoEncoder::Frame frame = encoderFor(video, *picture, bits).encode(*picture, key, seconds);
     video.lastFrame = now;
     video.pace.note(now);
     note(Stage::Convert, frame.convertMilliseconds);

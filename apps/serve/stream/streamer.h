@@ -63,7 +63,7 @@ class Streamer {
         uint32_t inFlight = 0;
         std::optional<Packet> waiting;  ///< encoded, and not taken yet
         bool synced = false;            ///< has all video frames since a key frame
-        bool joins = true;              ///< has had nothing since it started
+        bool joins = true;              ///< has had nothing but JPEG since it started
         bool still = false;             ///< the last one was lossless
         std::shared_ptr<const void> last;
     };
@@ -122,7 +122,8 @@ class Streamer {
     bool answerStillRequests(const studio::Shown& shown);
     template <typename Condition>
     std::vector<Recipient> recipients(int lane, Condition condition) const;
-    bool takesVideo(const Client& client, const Lane& lane, int number) const;
+    bool wantsVideo() const;
+    VideoEncoder& encoderFor(Video& video, const studio::Picture& picture, uint32_t bitsPerSecond);
     std::vector<Recipient> ready(int lane, bool video, const std::shared_ptr<const void>& what) const;
     void hand(const std::vector<Recipient>& recipients, int lane, FrameHeader header, const Bytes& bytes,
               const std::shared_ptr<const void>& what);

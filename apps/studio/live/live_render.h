@@ -100,7 +100,7 @@ class LiveRender {
     std::shared_ptr<const Picture> picture_;  ///< of the last frame; null: nobody has asked for it yet
     CameraParams camera_{};
     bool shown_ = false;
-    bool blurred_ = false;  ///< the last frame
+    bool blurred_ = false;  ///< the last frame was
     bool reasons_ = false, hasReasons_ = false;
     uint64_t launches_ = 0;  ///< of the mean
     uint64_t framesOfSame_ = 0;

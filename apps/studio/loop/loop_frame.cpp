@@ -27,18 +27,19 @@ CameraParams RenderLoop::cameraAt(double time) const {
 }
 
 /// The shutter of the next frame; closed if it has no motion blur. A comparison would see the scene at the
-/// instant that it stands at, and frames that play would each show one instant only.
+/// instant that it stands at, and frames that follow a movement would each show one instant only.
 Shutter RenderLoop::blur() const {
     const Pipeline& pipeline = wanted_.pipeline;
     const bool moves = stage_->moves() || rig_.movesOnPath();
     const bool can = pipeline.accumulates() && !pipeline.takesOneSampleALaunch();
-    return moves && can && !playback_.playing && !state_.comparison.isOn() ? state_.shutter : Shutter{};
+    const bool rests = !other_ && !playback_.playing && !state_.comparison.isOn();
+    return state_.shutter.isOpen() && moves && can && rests ? state_.shutter : Shutter{};
 }
 
 /// Returns true if the next picture would differ from the last one, apart from noise. `camera`: with the last
 /// one's extent.
 bool RenderLoop::isOther(const CameraParams& camera) const {
-    return main_.differs(wanted_, state_.samples) || stage_->lightsChanged() || blur() != blurOfLast_ ||
+    return main_.differs(wanted_, state_.samples) || stage_->lightsChanged() ||
            (state_.running && (!sameCamera(camera, main_.camera()) ||
                                (stage_->moves() && playback_.change()) || playback_.playing));
 }
@@ -49,9 +50,10 @@ bool RenderLoop::mustRender() {
     const std::tuple work{wanted_.pipeline, state_.samples, state_.comparison.isOn(), facts_.scenesShown};
     if (std::exchange(work_, work) != work) resolution_.forget();
     if (main_) wanted_.extent = main_.settings().extent;
-    const bool other = !main_ || isOther(cameraNow());
+    other_ = !main_ || isOther(cameraNow());
+    const bool switchesBlur = state_.running && blur() != blurOfLast_;
     const auto now = Clock::now();
-    if (other) changed_ = now;
+    if (other_) changed_ = now;
     const bool moves = std::chrono::duration<double>(now - changed_).count() < settleSeconds;
     // The compiler needs the cores of a CPU more than the preview that stands in for the first frame.
     const bool rough = isNew_ && device_.isCpu() && state_.resolution == Resolution::Automatic;
@@ -59,11 +61,12 @@ bool RenderLoop::mustRender() {
                            : resolution_.choose(state_.viewport, state_.resolution, moves);
     interruptible_ = !moves && resolution_.takesLong(uint64_t{wanted_.extent.width} * wanted_.extent.height);
     const bool resized = main_ && wanted_.extent != main_.settings().extent;
-    if (other || resized) {
+    const bool anew = other_ || resized || switchesBlur;
+    if (anew) {
         main_.noteChange();
         comparison_.noteChange();
     }
-    if (std::exchange(step_, false) || other || resized) return true;
+    if (std::exchange(step_, false) || anew) return true;
     if (state_.running && wantsReasons() && main_.lacksReasons()) return true;
     // Nothing is known of the device's speed yet: the coarse picture is not the last one.
     const bool unmeasured = !isNew_ && !moves && resolution_.isCoarse();
@@ -183,6 +186,7 @@ bool RenderLoop::goBack(const std::string& fault) {
     state_.comparison = before->comparison;
     state_.arrows = before->arrows;
     state_.pass = before->pass;
+    state_.shutter = before->shutter;
     return true;
 }
 

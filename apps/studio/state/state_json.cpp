@@ -394,8 +394,8 @@ void addCamera(std::vector<Entry>& all) {
         [](State & s) -> auto& { return s.time; }));
     all.push_back(number(
         {"shutter", "camera", "shutter",
-         "Motion blur: how long the shutter is open. While nothing plays, by path or direct, without a "
-         "denoiser or a comparison",
+         "Motion blur: how long the shutter is open; a frame is 1/30 s. Works while nothing moves, with the "
+         "integrators path and direct, without denoiser and comparison",
          "frames"},
         Kind::Float, 0.0, 100.0, {0.0, 2.0}, [](State & s) -> auto& { return s.shutter.open; }));
     all.push_back(choice(
