@@ -70,7 +70,7 @@ def render(scene, width, height, spp=64, **options):
         in degrees.
     jitter: where rays go through their pixels: "pixel" (anywhere), "frame" (at one point, the same for all pixels) or
         "off" (the centre). Default with a denoiser: "pixel" for "kpcn", else "off". Default without one: "off" for
-        sequences, else "pixel".
+        sequences without motion blur, else "pixel".
     weights: weight file for "kpcn", instead of the one that comes with Limpid.
     asset_root: files that the scene refers to must lie in this folder or in the scene's own; default: the parent of
         the scene's folder.
@@ -108,7 +108,8 @@ def render_sequence(scene, width, height, frames, spp=1, *, first=0, fps=30.0, a
     options: those of render(). A denoiser with a history keeps it from frame to frame.
     """
     first = _arrays.number("first", first, 0, 1000000)
-    renderer = _Renderer(scene, width, height, spp, default_jitter="off", fps=fps, frames=frames, animation=animation,
+    jitter = "pixel" if shutter else "off"  # blurred frames are not denoised later, sharp ones often are
+    renderer = _Renderer(scene, width, height, spp, default_jitter=jitter, fps=fps, frames=frames, animation=animation,
                          camera_path=camera_path, shutter=shutter, shutter_position=shutter_position, **options)
     return (renderer.render(frame) for frame in range(first, frames))
 

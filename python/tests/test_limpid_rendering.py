@@ -304,7 +304,7 @@ class RenderTest(unittest.TestCase):
     def test_an_open_shutter_blurs_what_moves(self):
         def frame(**options):
             return next(limpid.render_sequence("builtin:cornell-moving", 48, 48, frames=2, first=1, fps=4, spp=8,
-                                               device=device(), **options))
+                                               device=device(), jitter="off", **options))
 
         sharp, blurred, short = frame(), frame(shutter=1), frame(shutter=1e-6)
         np.testing.assert_allclose(short["normal"], sharp["normal"], atol=1e-3)
@@ -313,6 +313,7 @@ class RenderTest(unittest.TestCase):
         self.assertGreater(moving.sum(), 20)
         self.assertGreater(change[moving].mean(), 0.05)
         self.assertLess(change[~moving].mean(), 0.02)
+        self.assertGreater(np.abs(frame(shutter=1, shutter_position="end")["normal"] - blurred["normal"]).max(), 0.05)
         for options in {"denoiser": "svgf"}, {"shutter": -1}, {"shutter_position": "middle"}:
             with self.subTest(options), self.assertRaises(limpid.Error) as caught:
                 frame(**{"shutter": 1, **options})
