@@ -278,7 +278,7 @@ def render_sequence(
     animation: str | int | None = None,
     camera_path: _Path | None = None,
     shutter: float = 0.0,
-    shutter_position: str = "center",
+    shutter_position: Literal["start", "center", "end"] = "center",
     seed: int = 0,
     denoiser: str | None = None,
     parameters: Mapping[str, float] | None = None,
