@@ -59,6 +59,17 @@ class ViewToolsTest : public ViewTest {
         viewer.press(light + ".tree", 0.1);
         viewer.waitFor(light + " to open", [&] { return viewer.value(light + ".tree") == "open"; });
     }
+    static std::string copiedCommand(const DrivenViewer& viewer) {
+        viewer.click("copy command line");
+        viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
+        return viewer.fact("message");
+    }
+    /// Runs a copied command, which makes frame.exr.
+    void renderAgain(const std::string& command) const {
+        const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
+                                         command.substr(7) + " --float");
+        ASSERT_EQ(result.code, 0) << result.output;
+    }
     static void save(const fs::path& file, const std::string& text) {
         std::ofstream(file) << text;
         fs::last_write_time(file, fs::file_time_type::clock::now());
@@ -237,13 +248,10 @@ TEST_F(ViewToolsTest, LightsComeAndGo) {
 
     viewer.click("EXR");
     viewer.waitFor("a file", [&] { return viewer.fact("message") == "wrote limpid.exr"; });
-    viewer.click("copy command line");
-    viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
-    EXPECT_THAT(viewer.fact("message"), HasSubstr(" --light point,"));
-    EXPECT_THAT(viewer.fact("message"), HasSubstr(" --lights lights.json"));
-    const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
-                                     viewer.fact("message").substr(7) + " --float");
-    ASSERT_EQ(result.code, 0) << result.output;
+    const std::string command = copiedCommand(viewer);
+    EXPECT_THAT(command, HasSubstr(" --light point,"));
+    EXPECT_THAT(command, HasSubstr(" --lights lights.json"));
+    ASSERT_NO_FATAL_FAILURE(renderAgain(command));
     EXPECT_EQ(image::readPicture(path("frame.exr")).linear.pixels,
               image::readPicture(path("limpid.exr")).linear.pixels);
 
@@ -279,13 +287,10 @@ TEST_F(ViewToolsTest, CamerasNumbersAndThePreview) {
     EXPECT_NE(rolled, left);
     viewer.click("EXR");
     viewer.waitFor("a file", [&] { return viewer.fact("message") == "wrote limpid.exr"; });
-    viewer.click("copy command line");
-    viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
-    EXPECT_THAT(viewer.fact("message"), HasSubstr("--eye 1.5,"));
-    EXPECT_THAT(viewer.fact("message"), HasSubstr(" --up 0.7"));
-    const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
-                                     viewer.fact("message").substr(7) + " --float");
-    ASSERT_EQ(result.code, 0) << result.output;
+    const std::string command = copiedCommand(viewer);
+    EXPECT_THAT(command, HasSubstr("--eye 1.5,"));
+    EXPECT_THAT(command, HasSubstr(" --up 0.7"));
+    ASSERT_NO_FATAL_FAILURE(renderAgain(command));
     EXPECT_EQ(image::readPicture(path("frame.exr")).linear.pixels,
               image::readPicture(path("limpid.exr")).linear.pixels);
 
@@ -321,11 +326,8 @@ TEST_F(ViewToolsTest, LayersGoIntoTheFile) {
                               layered = image::readExr(path("limpid-2.exr"));
     EXPECT_EQ(plain.channels.size(), 4u);
     EXPECT_GT(layered.channels.size(), 20u);
-    viewer.click("copy command line");
-    viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
-    const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
-                                     viewer.fact("message").substr(7) + " --float");
-    ASSERT_EQ(result.code, 0) << result.output;
+    const std::string command = copiedCommand(viewer);
+    ASSERT_NO_FATAL_FAILURE(renderAgain(command));
     const image::LayeredImage again = image::readExr(path("frame.exr"));
     for (const char* channel : {"R", "diffuse.G", "normal.Z"})
         EXPECT_EQ(again.find(channel)->values, layered.find(channel)->values) << channel;
@@ -340,12 +342,9 @@ TEST_F(ViewToolsTest, MotionBlurIsOnTheCommandLine) {
     EXPECT_NE(viewer.settledPicture(), sharp);
     viewer.click("EXR");
     viewer.waitFor("a file", [&] { return viewer.fact("message") == "wrote limpid.exr"; });
-    viewer.click("copy command line");
-    viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
-    EXPECT_THAT(viewer.fact("message"), HasSubstr(" --shutter 4.1 "));
-    const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
-                                     viewer.fact("message").substr(7) + " --float");
-    ASSERT_EQ(result.code, 0) << result.output;
+    const std::string command = copiedCommand(viewer);
+    EXPECT_THAT(command, HasSubstr(" --shutter 4.1 "));
+    ASSERT_NO_FATAL_FAILURE(renderAgain(command));
     // The window has a running mean, and the program one of sums.
     const image::Image shown = image::readPicture(path("limpid.exr")).linear,
                        rendered = image::readPicture(path("frame.exr")).linear;
