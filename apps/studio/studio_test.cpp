@@ -115,6 +115,22 @@ TEST_F(StudioTest, AnOpenShutterBlursWhatMovesAtRest) {
     studio->finish();
 }
 
+/// With an open shutter, the scene stands at the last sample's instant.
+TEST_F(StudioTest, TheCameraTurnsToWhatIsSeenAtTheFramesTime) {
+    std::vector<vec3> targets;
+    for (const double shutter : {0.0, 40.0}) {
+        StudioSettings settings = small("builtin:cornell-moving");
+        settings.resolution = Resolution::Full;
+        const auto studio = make(settings);
+        const auto start = rest(*studio, studio->edit({{"time", 0.5}, {"shutter", shutter}}));
+        const auto turned = rest(*studio, studio->ask({.kind = Kind::Focus, .position = {0.61f, 0.73f}}));
+        EXPECT_NE(turned->state.pose, start->state.pose);
+        targets.push_back(turned->state.pose.target);
+        studio->finish();
+    }
+    EXPECT_LT(glm::length(targets[1] - targets[0]), 1e-4f);
+}
+
 /// Compiling takes seconds on some drivers. Nobody should take that for a program that hangs.
 TEST_F(StudioTest, ShadersThatAreCompiledAreTold) {
     const auto studio = make(small());

@@ -1,12 +1,15 @@
 #include "studio/camera/picker.h"
 
+#include "passes/deform/deform.h"
 #include "passes/gbuffer/gbuffer.h"
 
 namespace limpid::studio {
 
-std::optional<vec3> Picker::pointSeen(const scene::GpuScene& scene, const CameraParams& camera,
-                                      gpu::Extent extent, uint32_t x, uint32_t y) {
+std::optional<vec3> Picker::pointSeen(scene::GpuScene& scene, const std::optional<scene::SceneFrame>& moved,
+                                      const CameraParams& camera, gpu::Extent extent, uint32_t x,
+                                      uint32_t y) {
     graph_.beginFrame();
+    if (moved) deform(graph_, scene, *moved);
     GBufferSettings settings;
     settings.light = false;
     const CameraLaunch launch{.extent = extent, .camera = camera, .previousCamera = camera};

@@ -6,6 +6,7 @@
 #include "gpu/graph/frame_graph.h"
 #include "gpu/vulkan/device.h"
 #include "scene/device/gpu_scene.h"
+#include "scene/motion/scene_animator.h"
 #include "shaders/common/camera.h"
 
 namespace limpid::studio {
@@ -18,9 +19,9 @@ class Picker {
     }
 
     /// Where the ray through the pixel's centre meets the scene, world space; none where it meets nothing.
-    /// Waits for the device.
-    std::optional<vec3> pointSeen(const scene::GpuScene& scene, const CameraParams& camera,
-                                  gpu::Extent extent, uint32_t x, uint32_t y);
+    /// `moved`: what is changed in the scene before that. Waits for the device.
+    std::optional<vec3> pointSeen(scene::GpuScene& scene, const std::optional<scene::SceneFrame>& moved,
+                                  const CameraParams& camera, gpu::Extent extent, uint32_t x, uint32_t y);
 
   private:
     gpu::Device& device_;

@@ -38,6 +38,13 @@ std::optional<scene::SceneFrame> Stage::nextFrame(const std::optional<Step>& ste
     return frame;
 }
 
+std::optional<scene::SceneFrame> Stage::standAt(double time) const {
+    if (!animator_) return std::nullopt;
+    scene::SceneFrame frame = animator_->frame(time, time);
+    live_->setParams(frame.params);
+    return frame;
+}
+
 double Stage::duration() const {
     return scene_.clip == scene::none ? 0.0
                                       : double{scene_.rig.clips[static_cast<size_t>(scene_.clip)].duration()};

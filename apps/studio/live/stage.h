@@ -41,6 +41,8 @@ class Stage {
     /// What is to be changed on the device before the next frame. `step`: what the clip does; none: it rests
     /// at `time`.
     std::optional<scene::SceneFrame> nextFrame(const std::optional<Step>& step, double time);
+    /// What moves the device's scene to this moment, between frames. Empty if nothing moves.
+    std::optional<scene::SceneFrame> standAt(double time) const;
 
   private:
     scene::Scene scene_;

@@ -134,8 +134,10 @@ void RenderLoop::seeAll() {
 void RenderLoop::focus(const std::array<float, 2>& position) {
     const gpu::Extent extent = wanted_.extent;
     if (extent.width == 0 || extent.height == 0) return;
+    std::optional<scene::SceneFrame> moved;
+    if (blurOfLast_.isOpen()) moved = stage_->standAt(playback_.time());
     const auto point =
-        picker_.pointSeen(stage_->onDevice(), cameraNow(), extent, pixelAt(position[0], extent.width),
+        picker_.pointSeen(stage_->onDevice(), moved, cameraNow(), extent, pixelAt(position[0], extent.width),
                           pixelAt(position[1], extent.height));
     if (!point) return;
     freeCamera();
