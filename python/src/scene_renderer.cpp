@@ -1,6 +1,7 @@
 #include "scene_renderer.h"
 
 #include "base/error.h"
+#include "gpu/specialise/specialise.h"
 #include "renderer/layers/layers.h"
 #include "renderer/method/network_file.h"
 #include "renderer/method/parameters.h"
@@ -74,6 +75,7 @@ RenderDevice::RenderDevice(const std::string& select)
     : device([&] {
           gpu::DeviceOptions options;
           options.select = select;
+          options.specialise = gpu::specialiser();
           return options;
       }()) {}
 

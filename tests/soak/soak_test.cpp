@@ -19,6 +19,7 @@
 #include <thread>
 #include <vector>
 
+#include "gpu/specialise/specialise.h"
 #include "scene/load/scene_source.h"
 #include "serve/remote/remote_socket.h"
 #include "serve/session/protocol.h"
@@ -100,7 +101,7 @@ class Soak : public testing::Test {
         settings.resolution = studio::Resolution::Full;
         const char* const device = std::getenv("LIMPID_TEST_DEVICE");
         studio_ = std::make_unique<studio::Studio>(
-            gpu::DeviceOptions{.select = device ? device : "cpu"},
+            gpu::DeviceOptions{.select = device ? device : "cpu", .specialise = gpu::specialiser()},
             [](const gpu::Device&) { return scene::Tracer::Compute; }, scene::openScene,
             [](const scene::Scene& scene) { return scene.cameras.front(); }, settings);
         server_ = std::make_unique<WebServer>(*studio_, ServeSettings{}, files_, token);
