@@ -24,6 +24,11 @@ vec3 safeNormalize(const vec3& v, const vec3& otherwise) {
     return length > 1e-20f && std::isfinite(length) ? v / length : otherwise;
 }
 
+vec3 transformedPoint(const mat4& matrix, const vec3& p) {
+    return vec3(matrix * vec4(p, 1.0f));
+}
+
+/// Of directions.
 struct Transform {
     mat4 matrix;
     mat3 normalMatrix;
@@ -33,7 +38,6 @@ struct Transform {
         : matrix(m), normalMatrix(cofactor(mat3(m))), mirrored(glm::determinant(mat3(m)) < 0.0f) {
         if (mirrored) normalMatrix = -normalMatrix;
     }
-    vec3 point(const vec3& p) const { return vec3(matrix * vec4(p, 1.0f)); }
     vec3 normal(const vec3& n) const { return safeNormalize(normalMatrix * n, vec3(0, 0, 1)); }
     vec3 direction(const vec3& d) const { return safeNormalize(mat3(matrix) * d, vec3(1, 0, 0)); }
 
@@ -81,7 +85,8 @@ class GeometryPacker {
     };
     /// The triangles of one tree.
     struct Triangles {
-        RawVector<Corners> corners;
+        const Mesh* mesh =
+            nullptr;  ///< of all of them, in its own space; null: those of instances, in the world
         RawVector<TriangleRecord> records;
     };
     struct Tree {
@@ -132,7 +137,7 @@ class GeometryPacker {
             flags |= layout::INSTANCE_DEFORMING;
         } else if (!hasTree) {
             firstTriangle = packShading(mesh, transform, static_cast<uint32_t>(instance.material));
-            addTriangles(mesh, transform, index, firstTriangle, static_,
+            addTriangles(mesh, index, firstTriangle, static_,
                          [&](uint32_t t) { return alphaFlag(mesh, instance, t); });
         } else if (firstTriangle == layout::NONE) {
             firstTriangle = meshFirstTriangle_[meshIndex] = packShading(mesh, Transform(mat4(1.0f)), 0);
@@ -152,19 +157,30 @@ class GeometryPacker {
 
     /// Adds all triangles of a mesh. `flag` returns the alpha flag of a triangle.
     template <typename Flag>
-    static void addTriangles(const Mesh& mesh, const Transform& transform, uint32_t instance,
-                             uint32_t firstTriangle, Triangles& triangles, const Flag& flag) {
+    static void addTriangles(const Mesh& mesh, uint32_t instance, uint32_t firstTriangle,
+                             Triangles& triangles, const Flag& flag) {
         const size_t first = triangles.records.size();
-        triangles.corners.resize(first + mesh.triangleCount());
         triangles.records.resize(first + mesh.triangleCount());
         forEachIndex(mesh.triangleCount(), [&](size_t i) {
-            for (size_t corner = 0; corner < 3; ++corner) {
-                triangles.corners[first + i][corner] =
-                    transform.point(mesh.positions[mesh.indices[3 * i + corner]]);
-            }
             const auto t = static_cast<uint32_t>(i);
             triangles.records[first + i] = {t | flag(t), instance, firstTriangle + t};
         });
+    }
+
+    Corners cornersOf(const Triangles& triangles, size_t index) const {
+        const TriangleRecord& record = triangles.records[index];
+        const Mesh* mesh = triangles.mesh;
+        mat4 toSpace(1.0f);
+        if (!mesh) {
+            const Instance& instance = scene_.instances[record.instance];
+            mesh = &scene_.meshes[static_cast<size_t>(instance.mesh)];
+            toSpace = instance.transform;
+        }
+        const size_t first = size_t{3} * (record.primitive & ~layout::BVH_TRIANGLE_ALPHA);
+        Corners corners;
+        for (size_t i = 0; i < 3; ++i)
+            corners[i] = transformedPoint(toSpace, mesh->positions[mesh->indices[first + i]]);
+        return corners;
     }
 
     /// Appends transformed vertices and shading triangles; returns the first triangle's index.
@@ -204,11 +220,26 @@ class GeometryPacker {
                   glm::packUnorm2x16({color.b, color.a})};
     }
 
+    /// Large trees are built without an array of all corners, which would be a quarter of the memory.
+    Bvh buildTree(const Triangles& triangles, const std::vector<bool>& divisible) {
+        const size_t count = triangles.records.size();
+        const Progress progress = progressOf(count);
+        if (count <= maxDivisibleTriangles) {
+            RawVector<Corners> corners(count);
+            forEachIndex(count, [&](size_t i) { corners[i] = cornersOf(triangles, i); });
+            return buildTriangleBvh(corners, divisible, progress);
+        }
+        References references(count);
+        forEachIndex(count, [&](size_t i) {
+            references[i] = {boxOf(cornersOf(triangles, i)), static_cast<uint32_t>(i)};
+        });
+        return buildTriangleBvh(std::move(references), progress);
+    }
+
     /// Builds a tree and appends it to the node and triangle buffers.
     Tree appendTree(const Triangles& triangles, bool moves = false) {
         const std::vector<bool> isOpaque = opaqueOnes(triangles);
-        const std::vector<bool> divisible = moves ? std::vector<bool>(isOpaque.size()) : isOpaque;
-        const Bvh bvh = buildTriangleBvh(triangles.corners, divisible, progressOf(isOpaque.size()));
+        Bvh bvh = buildTree(triangles, moves ? std::vector<bool>(isOpaque.size()) : isOpaque);
         const auto firstTriangle =
             static_cast<uint32_t>(data_.bvhTriangles.size() / layout::BVH_TRIANGLE_TEXELS);
         if (firstTriangle + bvh.order.size() > BvhRef::maxIndex) {
@@ -217,10 +248,11 @@ class GeometryPacker {
         const uint32_t root = appendNodes(bvh.nodes, [&](uint32_t child, uint32_t firstNode) {
             return child + (BvhRef::isLeaf(child) ? firstTriangle : firstNode);
         });
-        noteRepeated(bvh.order, triangles.corners.size(), firstTriangle);
+        bvh.nodes = {};
+        noteRepeated(bvh.order, isOpaque.size(), firstTriangle);
         data_.bvhTriangles.resize(data_.bvhTriangles.size() + bvh.order.size() * layout::BVH_TRIANGLE_TEXELS);
         forEachIndex(bvh.order.size(), [&](size_t i) {
-            const auto& [a, b, c] = triangles.corners[bvh.order[i]];
+            const auto [a, b, c] = cornersOf(triangles, bvh.order[i]);
             const TriangleRecord& record = triangles.records[bvh.order[i]];
             vec4* out = &data_.bvhTriangles[(firstTriangle + i) * layout::BVH_TRIANGLE_TEXELS];
             out[0] = vec4(a, std::bit_cast<float>(record.primitive));
@@ -281,7 +313,7 @@ class GeometryPacker {
     /// Builds the static tree, a tree per instanced mesh, and a top-level tree over all instances.
     void packTwoLevels() {
         packPreviousInstances();
-        if (!static_.corners.empty()) {
+        if (!static_.records.empty()) {
             const Tree tree = appendTree(static_);
             still_.push_back({addRecord(tree, mat4(1.0f), layout::NONE), tree.bounds});
         }
@@ -332,8 +364,8 @@ class GeometryPacker {
             const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
             const uint32_t firstTriangle =
                 data_.instances[size_t{deforming.instance} * layout::INSTANCE_TEXELS + 3].z;
-            Triangles triangles;
-            addTriangles(mesh, Transform(mat4(1.0f)), layout::NONE, firstTriangle, triangles,
+            Triangles triangles{&mesh, {}};
+            addTriangles(mesh, layout::NONE, firstTriangle, triangles,
                          [&](uint32_t t) { return alphaFlag(mesh, instance, t); });
             const Tree tree = appendTree(triangles, true);
             deforming.leaf = static_cast<uint32_t>(motion.leaves.size());
@@ -371,17 +403,16 @@ class GeometryPacker {
 
     Tree appendMeshTree(size_t meshIndex) {
         const Mesh& mesh = scene_.meshes[meshIndex];
-        Triangles triangles;
+        Triangles triangles{&mesh, {}};
         std::vector<const Instance*> uses;
         for (const Instance& instance : scene_.instances) {
             if (static_cast<size_t>(instance.mesh) == meshIndex) uses.push_back(&instance);
         }
-        addTriangles(mesh, Transform(mat4(1.0f)), layout::NONE, meshFirstTriangle_[meshIndex], triangles,
-                     [&](uint32_t t) {
-                         uint32_t flag = 0;
-                         for (const Instance* instance : uses) flag |= alphaFlag(mesh, *instance, t);
-                         return flag;
-                     });
+        addTriangles(mesh, layout::NONE, meshFirstTriangle_[meshIndex], triangles, [&](uint32_t t) {
+            uint32_t flag = 0;
+            for (const Instance* instance : uses) flag |= alphaFlag(mesh, *instance, t);
+            return flag;
+        });
         return appendTree(triangles);
     }
 

@@ -1,8 +1,9 @@
-// Two functions at the same time, either of which may throw.
+// Functions at the same time, each of which may throw.
 #pragma once
 
 #include <tbb/parallel_invoke.h>
 
+#include <cstddef>
 #include <exception>
 
 namespace limpid::scene {
@@ -23,6 +24,15 @@ void runBoth(const First& first, const Second& second) {
     tbb::parallel_invoke([&] { kept(first, faultOfFirst); }, [&] { kept(second, faultOfSecond); });
     if (faultOfFirst) std::rethrow_exception(faultOfFirst);
     if (faultOfSecond) std::rethrow_exception(faultOfSecond);
+}
+
+/// Calls use(i) for 0 to count - 1 in the same way.
+template <typename Use>
+void runAll(size_t count, const Use& use, size_t first = 0) {
+    if (count == 0) return;
+    if (count == 1) return use(first);
+    const size_t half = count / 2;
+    runBoth([&] { runAll(half, use, first); }, [&] { runAll(count - half, use, first + half); });
 }
 
 }  // namespace limpid::scene

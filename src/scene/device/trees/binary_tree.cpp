@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "scene/device/run_both.h"
 #include "scene/device/trees/parallel_partition.h"
@@ -117,16 +118,39 @@ Boxes boxesOf(std::span<const Reference> references) {
 
 class Builder {
   public:
-    Builder(References references, uint32_t sahDepth, const Splits& splits, const Progress& progress)
-        : references_(std::move(references)), splits_(splits), sahDepth_(sahDepth), progress_(progress) {
+    /// Nodes of up to `partSize` references become leaves.
+    Builder(References references, uint32_t sahDepth, const Splits& splits, uint32_t partSize,
+            const Progress& progress)
+        : references_(std::move(references)),
+          splits_(splits),
+          sahDepth_(sahDepth),
+          partSize_(partSize),
+          progress_(progress) {
         const auto count = static_cast<uint32_t>(references_.size());
         references_.resize(count + splits.most);
-        nodes_.resize(2 * references_.size() - 1);
+        nodes_.resize(2 * references_.size() - 1);  // memory that is not written is not used
         build(0, 1, {0, count, splits.most}, 0);
-        if (splits.most > 0) closeGaps();
+        if (splits.most > 0 || partSize > 1) putInOrder();
     }
 
     BinaryTree take() { return std::move(nodes_); }
+    TreeTop takeTop() {
+        TreeTop top{std::move(nodes_), {}, std::move(references_)};
+        std::vector<std::pair<uint32_t, uint32_t>> open{{0, 0}};
+        while (!open.empty()) {
+            const auto [index, depth] = open.back();
+            open.pop_back();
+            BinaryNode& node = top.nodes[index];
+            if (node.isLeaf()) {
+                const TreeTop::Part part{node.primitive, node.child, depth};
+                node.primitive = static_cast<uint32_t>(top.parts.size());
+                top.parts.push_back(part);
+            } else {
+                open.insert(open.end(), {{node.child + 1, depth + 1}, {node.child, depth + 1}});
+            }
+        }
+        return top;
+    }
 
   private:
     /// References, and room for more behind them.
@@ -140,14 +164,12 @@ class Builder {
     }
 
     /// Nodes below this one are numbered from `children` on, with gaps where room for references was not
-    /// used. So their numbers do not depend on the threads.
+    /// used. So their numbers do not depend on the threads. Where leaves are parts, gaps would be as large as
+    /// the parts: nodes are numbered as they come, until they are put in order.
     void build(uint32_t index, uint32_t children, const Range& range, uint32_t depth) {
         BinaryNode& node = nodes_[index] = {};
-        if (range.count == 1) {
-            node.primitive = references_[range.first].primitive;
-            node.bounds = references_[range.first].bounds;
-            return;
-        }
+        if (range.count <= partSize_) return makeLeaf(node, range);
+        if (partSize_ > 1) children = used_.fetch_add(2, std::memory_order_relaxed);
         const Boxes boxes = boxesOf(in(range));
         node.bounds = boxes.all;
         if (index == 0) leastOverlap_ = leastOverlap * node.bounds.halfArea();
@@ -158,28 +180,42 @@ class Builder {
         const auto buildLeft = [&] { build(children, children + 2, left, depth + 1); };
         const auto buildRight = [&] { build(children + 1, afterLeft, right, depth + 1); };
         if (range.count > parallelThreshold) {
+            const uint32_t reported = std::max(partSize_, parallelThreshold);
             runBoth(buildLeft, buildRight);
-            if (left.count <= parallelThreshold) report(left.count);
-            if (right.count <= parallelThreshold) report(right.count);
+            if (left.count <= reported) report(left.count);
+            if (right.count <= reported) report(right.count);
         } else {
             buildLeft();
             buildRight();
         }
     }
 
-    void closeGaps() {
-        uint32_t used = 1;
+    /// That of a part has its first reference and their number, until takeTop().
+    void makeLeaf(BinaryNode& node, const Range& range) const {
+        if (partSize_ > 1) {
+            node.bounds = boxesOf(in(range)).all;
+            node.primitive = range.first;
+            node.child = range.count;
+        } else {
+            node.bounds = references_[range.first].bounds;
+            node.primitive = references_[range.first].primitive;
+        }
+    }
+
+    /// Numbers the nodes as a traversal meets them, without gaps.
+    void putInOrder() {
+        const BinaryTree from = std::exchange(nodes_, {});
+        nodes_.push_back(from[0]);
         std::vector<uint32_t> open{0};
         while (!open.empty()) {
-            BinaryNode& node = nodes_[open.back()];
+            const uint32_t index = open.back();
             open.pop_back();
-            if (node.isLeaf()) continue;
-            std::copy_n(nodes_.begin() + node.child, 2, nodes_.begin() + used);
-            node.child = used;
-            open.insert(open.end(), {used + 1, used});
-            used += 2;
+            if (nodes_[index].isLeaf()) continue;
+            const auto children = static_cast<uint32_t>(nodes_.size());
+            const auto first = from.begin() + std::exchange(nodes_[index].child, children);
+            nodes_.insert(nodes_.end(), first, first + 2);
+            open.insert(open.end(), {children + 1, children});
         }
-        nodes_.resize(used);
     }
 
     /// Reports that a small subtree of so many references is done.
@@ -349,18 +385,23 @@ class Builder {
 
     References references_;
     const Splits& splits_;
-    uint32_t sahDepth_;
+    uint32_t sahDepth_, partSize_;
     float leastOverlap_ = 0.0f;  ///< as an area
     BinaryTree nodes_;
     Progress progress_;
     std::atomic<uint32_t> placed_{0};
+    std::atomic<uint32_t> used_{1};  ///< nodes, where leaves are parts
 };
 
 }  // namespace
 
 BinaryTree buildBinaryTree(References references, uint32_t sahDepth, const Splits& splits,
                            const Progress& progress) {
-    return Builder(std::move(references), sahDepth, splits, progress).take();
+    return Builder(std::move(references), sahDepth, splits, 1, progress).take();
+}
+
+TreeTop buildTreeTop(References references, uint32_t sahDepth, uint32_t partSize, const Progress& progress) {
+    return Builder(std::move(references), sahDepth, {}, partSize, progress).takeTop();
 }
 
 }  // namespace limpid::scene

@@ -57,4 +57,19 @@ struct Splits {
 BinaryTree buildBinaryTree(References references, uint32_t sahDepth, const Splits& splits = {},
                            const Progress& progress = {});
 
+/// The upper nodes of a tree. Each leaf is a part, which is to be built for itself.
+struct TreeTop {
+    struct Part {
+        uint32_t first, count;  ///< of the references
+        uint32_t depth;         ///< of its root
+    };
+    BinaryTree nodes;  ///< `primitive` of a leaf: index of its part
+    std::vector<Part> parts;
+    References references;
+};
+
+/// Builds a tree like buildBinaryTree(), but ends at nodes of up to `partSize` references.
+TreeTop buildTreeTop(References references, uint32_t sahDepth, uint32_t partSize,
+                     const Progress& progress = {});
+
 }  // namespace limpid::scene

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <utility>
@@ -11,7 +12,9 @@
 
 #include "base/error.h"
 #include "base/for_each_index.h"
+#include "scene/device/run_both.h"
 #include "scene/device/trees/collapse.h"
+#include "scene/device/trees/cut.h"
 #include "scene/device/trees/reinsertion.h"
 
 namespace limpid::scene {
@@ -44,29 +47,28 @@ void quantise(BvhNode& node, uint32_t child, const Aabb& box) {
     }
 }
 
-/// Writes the wide nodes of a collapsed tree, and the order of primitives in their leaves. Small subtrees are
-/// written by other WideBuilders before, each to arrays of its own.
+/// Writes the wide nodes of a collapsed tree, and the order of primitives in their leaves.
 class WideBuilder {
   public:
-    /// Subtrees of up to `partSize` leaves are in `parts`, in the order of a traversal.
-    WideBuilder(const Collapse& collapse, Bvh& out, uint32_t partSize = 0, std::span<Bvh> parts = {})
-        : collapse_(collapse), out_(out), partSize_(partSize), parts_(parts) {}
+    /// With `parts`, leaves of the binary tree are parts: trees that were made before, by index.
+    WideBuilder(const Collapse& collapse, Bvh& out, std::span<Bvh> parts = {})
+        : collapse_(collapse), out_(out), parts_(parts), places_(parts.size()) {}
 
     /// Appends the nodes of the subtree of `binary`, and returns how many stack entries it needs.
     uint32_t emit(uint32_t binary) {
-        if (collapse_.leavesBelow(binary) <= partSize_) return reservePart();
         const size_t index = out_.nodes.size();
         out_.nodes.emplace_back(BvhNode{});
         std::vector<BvhChild> wide;
         uint32_t deepest = 0;
         for (const uint32_t child : collapse_.childrenOf(binary)) {
-            const Aabb& bounds = collapse_.tree()[child].bounds;
-            if (collapse_.becomesLeaf(child)) {
-                wide.push_back({leaf(child), bounds});
+            const BinaryNode& node = collapse_.tree()[child];
+            if (parts_.empty() && collapse_.becomesLeaf(child)) {
+                wide.push_back({leaf(child), node.bounds});
                 continue;
             }
-            wide.push_back({BvhRef::node(static_cast<uint32_t>(out_.nodes.size())), bounds});
-            deepest = std::max(deepest, emit(child));
+            wide.push_back({BvhRef::node(static_cast<uint32_t>(out_.nodes.size())), node.bounds});
+            const bool isPart = !parts_.empty() && node.isLeaf();
+            deepest = std::max(deepest, isPart ? reservePart(node.primitive) : emit(child));
         }
         out_.nodes[index] = makeBvhNode(wide);
         return deepest + 3;
@@ -93,10 +95,9 @@ class WideBuilder {
         uint32_t node, entry;
     };
 
-    uint32_t reservePart() {
-        const Bvh& part = parts_[places_.size()];
-        places_.push_back(
-            {static_cast<uint32_t>(out_.nodes.size()), static_cast<uint32_t>(out_.order.size())});
+    uint32_t reservePart(uint32_t index) {
+        const Bvh& part = parts_[index];
+        places_[index] = {static_cast<uint32_t>(out_.nodes.size()), static_cast<uint32_t>(out_.order.size())};
         out_.nodes.resize(out_.nodes.size() + part.nodes.size());
         out_.order.resize(out_.order.size() + part.order.size());
         return part.stackSize;
@@ -122,21 +123,9 @@ class WideBuilder {
 
     const Collapse& collapse_;
     Bvh& out_;
-    uint32_t partSize_;
     std::span<Bvh> parts_;
     std::vector<Place> places_;
 };
-
-/// Subtrees of up to so many leaves are written by one thread.
-constexpr uint32_t leavesOfAPart = 1u << 15;
-
-/// The largest subtrees of up to `leavesOfAPart` leaves, in the order of a traversal.
-void findParts(const Collapse& collapse, uint32_t binary, std::vector<uint32_t>& parts) {
-    if (collapse.leavesBelow(binary) <= leavesOfAPart) return parts.push_back(binary);
-    for (const uint32_t child : collapse.childrenOf(binary)) {
-        if (!collapse.becomesLeaf(child)) findParts(collapse, child, parts);
-    }
-}
 
 }  // namespace
 
@@ -172,13 +161,12 @@ namespace {
 
 /// Larger leaves cost more tests but fewer nodes (measured in docs/benchmarks.md).
 constexpr uint32_t maxTrianglesPerLeaf = 4;
-/// Trees of more triangles take long to build, and all the memory that there is.
-constexpr size_t largeTree = size_t{1} << 20;
+/// Trees of more triangles are built in parts, which takes less time and memory.
 constexpr size_t hugeTree = size_t{1} << 23;
 
 /// Of reinsertion.
 uint32_t roundsFor(size_t triangles) {
-    return triangles > hugeTree ? 0 : triangles > largeTree ? 1 : 5;
+    return triangles > maxDivisibleTriangles ? 1 : 5;
 }
 
 void checkCount(size_t primitives) {
@@ -198,29 +186,58 @@ Bvh emptyBvh() {
     return bvh;
 }
 
-Bvh wideBvh(const BinaryTree& binary, uint32_t maxLeafSize) {
-    const Collapse collapse(binary, maxLeafSize);
-    std::vector<uint32_t> roots;
-    findParts(collapse, 0, roots);
-    std::vector<Bvh> parts(roots.size());
-    tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
-        parts[i].nodes.reserve(collapse.leavesBelow(roots[i]) / 2 + 1);
-        parts[i].order.reserve(collapse.leavesBelow(roots[i]));
-        parts[i].stackSize = WideBuilder(collapse, parts[i]).emit(roots[i]);
-    });
+/// Written by one thread.
+Bvh smallBvh(const BinaryTree& tree, uint32_t maxLeafSize) {
+    const Collapse collapse(tree, maxLeafSize);
     Bvh bvh;
-    bvh.bounds = binary[0].bounds;
-    size_t nodes = 2 * parts.size() + 64, entries = 64;  // there are few above the parts
+    bvh.bounds = tree[0].bounds;
+    bvh.stackSize = WideBuilder(collapse, bvh).emit(0);
+    bvh.nodes.shrink_to_fit();
+    bvh.order.shrink_to_fit();
+    return bvh;
+}
+
+/// The leaves of `top` are the parts, which this frees.
+Bvh joined(const BinaryTree& top, std::vector<Bvh> parts) {
+    if (parts.size() == 1) return std::move(parts.front());
+    const Collapse collapse(top, 1);
+    Bvh bvh;
+    bvh.bounds = top[0].bounds;
+    size_t nodes = parts.size(), entries = 0;  // there are fewer above the parts
     for (const Bvh& part : parts) {
         nodes += part.nodes.size();
         entries += part.order.size();
     }
     bvh.nodes.reserve(nodes);
     bvh.order.reserve(entries);
-    WideBuilder builder(collapse, bvh, leavesOfAPart, parts);
+    WideBuilder builder(collapse, bvh, parts);
     bvh.stackSize = builder.emit(0);
     builder.fillParts();
     return bvh;
+}
+
+/// Subtrees of up to so many leaves are one thread's work.
+constexpr uint32_t leavesOfAPart = 1u << 15;
+
+Bvh wideBvh(const BinaryTree& tree, uint32_t maxLeafSize) {
+    if (tree.size() < 2 * leavesOfAPart) return smallBvh(tree, maxLeafSize);
+    const Cut cut = cutTree(tree, leavesOfAPart);
+    std::vector<Bvh> parts(cut.roots.size());
+    tbb::parallel_for(size_t{0}, parts.size(),
+                      [&](size_t i) { parts[i] = smallBvh(subtreeOf(tree, cut.roots[i]), maxLeafSize); });
+    return joined(cut.top, std::move(parts));
+}
+
+/// Of the time that a tree takes that is built in parts (measured).
+constexpr double shareOfTop = 0.4;
+
+Bvh movedBvh(References triangles, const Splits& splits, const Progress& progress) {
+    const size_t count = triangles.size();
+    checkCount(count + splits.most);
+    if (triangles.empty()) return emptyBvh();
+    BinaryTree tree = buildBinaryTree(std::move(triangles), maxSahDepth, splits, progress.part(0.0, 0.6));
+    reinsert(tree, roundsFor(count), progress.part(0.6, 1.0));
+    return wideBvh(tree, maxTrianglesPerLeaf);
 }
 
 }  // namespace
@@ -233,24 +250,41 @@ Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDept
     return wideBvh(buildBinaryTree(std::move(references), sahDepth), maxLeafSize);
 }
 
+Bvh buildBvhInParts(References references, uint32_t maxLeafSize, uint32_t partSize,
+                    const Progress& progress) {
+    checkCount(references.size());
+    if (references.empty()) return emptyBvh();
+    TreeTop top = buildTreeTop(std::move(references), maxSahDepth, partSize, progress.part(0.0, shareOfTop));
+    std::vector<Bvh> parts(top.parts.size());
+    std::atomic<size_t> done = 0;
+    runAll(parts.size(), [&](size_t i) {
+        const TreeTop::Part& part = top.parts[i];
+        const auto first = top.references.begin() + part.first;
+        const BinaryTree tree =
+            buildBinaryTree({first, first + part.count}, maxSahDepth - std::min(part.depth, maxSahDepth));
+        parts[i] = smallBvh(tree, maxLeafSize);
+        progress.part(shareOfTop, 1.0).at(++done, parts.size());
+    });
+    top.references = {};
+    return joined(top.nodes, std::move(parts));
+}
+
+Bvh buildTriangleBvh(References triangles, const Progress& progress) {
+    if (triangles.size() > hugeTree)
+        return buildBvhInParts(std::move(triangles), maxTrianglesPerLeaf, leavesOfAPart, progress);
+    return movedBvh(std::move(triangles), {}, progress);
+}
+
 Bvh buildTriangleBvh(std::span<const Corners> triangles, const std::vector<bool>& divisible,
                      const Progress& progress) {
-    const bool large = triangles.size() > largeTree;
-    const auto most = static_cast<size_t>(large ? 0 : std::count(divisible.begin(), divisible.end(), true));
-    checkCount(triangles.size() + most);
-    if (triangles.empty()) return emptyBvh();
+    const auto most = static_cast<size_t>(std::count(divisible.begin(), divisible.end(), true));
     References references;
     references.reserve(triangles.size() + most);
     references.resize(triangles.size());
     forEachIndex(triangles.size(), [&](size_t i) {
-        Aabb box;
-        for (const vec3& corner : triangles[i]) box.grow(corner);
-        references[i] = {box, static_cast<uint32_t>(i)};
+        references[i] = {boxOf(triangles[i]), static_cast<uint32_t>(i)};
     });
-    const Splits splits{triangles, divisible, static_cast<uint32_t>(most)};
-    BinaryTree binary = buildBinaryTree(std::move(references), maxSahDepth, splits, progress.part(0.0, 0.6));
-    reinsert(binary, roundsFor(triangles.size()), progress.part(0.6, 1.0));
-    return wideBvh(binary, maxTrianglesPerLeaf);
+    return movedBvh(std::move(references), {triangles, divisible, static_cast<uint32_t>(most)}, progress);
 }
 
 }  // namespace limpid::scene

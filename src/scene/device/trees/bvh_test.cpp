@@ -41,12 +41,6 @@ std::vector<Corners> mixedTriangles(size_t count) {
     return triangles;
 }
 
-Aabb boxOf(const Corners& corners) {
-    Aabb box;
-    for (const vec3& corner : corners) box.grow(corner);
-    return box;
-}
-
 std::vector<Aabb> boxesOf(const std::vector<Corners>& triangles) {
     std::vector<Aabb> boxes;
     for (const Corners& corners : triangles) boxes.push_back(boxOf(corners));
@@ -213,6 +207,53 @@ TEST(TriangleBvh, OfManyTrianglesIsWhole) {
     }
 }
 
+References referencesOf(const std::vector<Corners>& triangles) {
+    References references;
+    for (uint32_t i = 0; i < triangles.size(); ++i) references.push_back({boxOf(triangles[i]), i});
+    return references;
+}
+
+TEST(TriangleBvh, BuiltInPartsIsWholeAndCostsNoMore) {
+    const std::vector<Corners> triangles = mixedTriangles(20000);
+    const double whole = costOf(buildBvh(boxesOf(triangles), 4));
+    // The root of a part is a node of its own.
+    const std::vector<std::pair<uint32_t, double>> most{{2, 1.4}, {100, 1.03}, {3000, 1.004}, {20000, 1.0}};
+    for (const auto& [partSize, share] : most) {
+        const Bvh bvh = buildBvhInParts(referencesOf(triangles), 4, partSize);
+        Met met{std::vector<int>(bvh.nodes.size()), std::vector<int>(bvh.order.size())};
+        traverse(bvh, triangles, 0, met);
+        EXPECT_EQ(std::count(met.nodes.begin(), met.nodes.end(), 1), bvh.nodes.size());
+        EXPECT_EQ(std::count(met.entries.begin(), met.entries.end(), 1), triangles.size());
+        EXPECT_EQ(met.outside, 0u);
+        std::vector<uint32_t> order(bvh.order.begin(), bvh.order.end());
+        std::sort(order.begin(), order.end());
+        for (uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
+        EXPECT_LE(costOf(bvh), share * whole) << partSize;
+        const Bvh again = buildBvhInParts(referencesOf(triangles), 4, partSize);
+        EXPECT_EQ(bvh.order, again.order);
+        ASSERT_EQ(bvh.nodes.size(), again.nodes.size());
+        EXPECT_EQ(std::memcmp(bvh.nodes.data(), again.nodes.data(), bvh.nodes.size() * sizeof(BvhNode)), 0);
+    }
+    EXPECT_EQ(buildBvhInParts({}, 4, 100).order.size(), 0u);
+    EXPECT_EQ(buildBvhInParts(referencesOf({triangles[0]}), 4, 100).order.size(), 1u);
+}
+
+TEST(TriangleBvh, BuiltInPartsCanBeGivenUp) {
+    const std::vector<Corners> triangles = mixedTriangles(10000);
+    for (int percent = 0; percent < 100; percent += 20) {
+        const Progress progress = Progress::watched();
+        std::jthread canceller([&](const std::stop_token& isBuilt) {
+            while (100.0 * progress.done() < percent && !isBuilt.stop_requested()) std::this_thread::yield();
+            progress.cancel();
+        });
+        try {
+            EXPECT_EQ(buildBvhInParts(referencesOf(triangles), 4, 64, progress).order.size(), 10000u);
+        } catch (const Cancelled&) {
+        }
+        canceller.request_stop();
+    }
+}
+
 TEST(RunBoth, FinishesOneWhenTheOtherThrows) {
     std::atomic<bool> begun = false;
     std::atomic<int> count = 0;
@@ -274,7 +315,7 @@ TEST(TriangleBvh, TakesOneTriangleAndManyAtOnePlace) {
         const Bvh bvh = buildTriangleBvh(triangles, std::vector<bool>(count, true));
         for (uint32_t i = 0; i < count; ++i) EXPECT_TRUE(reaches(bvh, 0, vec3(0.25f, 0.25f, 0.0f), i));
     }
-    EXPECT_EQ(buildTriangleBvh({}, {}).order.size(), 0u);
+    EXPECT_EQ(buildTriangleBvh(std::vector<Corners>{}, {}).order.size(), 0u);
 }
 
 TEST(Clip, APartIsTheTriangleWithinTheBox) {
@@ -288,9 +329,7 @@ TEST(Clip, APartIsTheTriangleWithinTheBox) {
 }
 
 BinaryTree treeOver(const std::vector<Corners>& triangles) {
-    References references;
-    for (uint32_t i = 0; i < triangles.size(); ++i) references.push_back({boxOf(triangles[i]), i});
-    return buildBinaryTree(references, maxSahDepth);
+    return buildBinaryTree(referencesOf(triangles), maxSahDepth);
 }
 
 double areaOf(const BinaryTree& tree) {

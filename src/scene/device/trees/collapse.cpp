@@ -1,7 +1,5 @@
 #include "scene/device/trees/collapse.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 
 namespace limpid::scene {
@@ -9,14 +7,12 @@ namespace {
 
 /// The cost of visiting a wide node, in tests of a triangle.
 constexpr float nodeCost = 1.7f;
-/// Subtrees from this depth on are solved by one thread.
-constexpr uint32_t parallelDepth = 10;
 
 }  // namespace
 
 Collapse::Collapse(const BinaryTree& tree, uint32_t maxLeafSize)
     : tree_(tree), maxLeafSize_(maxLeafSize), best_(tree.size()) {
-    solve(0, 0);
+    solve(0);
 }
 
 std::vector<uint32_t> Collapse::childrenOf(uint32_t node) const {
@@ -28,7 +24,7 @@ std::vector<uint32_t> Collapse::childrenOf(uint32_t node) const {
     return children;
 }
 
-void Collapse::solve(uint32_t index, uint32_t depth) {
+void Collapse::solve(uint32_t index) {
     const BinaryNode& node = tree_[index];
     const float area = node.bounds.halfArea();
     Best& best = best_[index] = {};
@@ -37,14 +33,8 @@ void Collapse::solve(uint32_t index, uint32_t depth) {
         best.count = best.leaf = 1;
         return;
     }
-    const auto left = [&] { solve(node.child, depth + 1); };
-    const auto right = [&] { solve(node.child + 1, depth + 1); };
-    if (depth < parallelDepth) {
-        tbb::parallel_invoke(left, right);
-    } else {
-        left();
-        right();
-    }
+    solve(node.child);
+    solve(node.child + 1);
     best.count = best_[node.child].count + best_[node.child + 1].count;
     const float asNode = nodeCost * area + shared(node, width, bestShare(node, width));
     const float asLeaf = area * static_cast<float>(best.count);

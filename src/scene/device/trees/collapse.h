@@ -25,8 +25,6 @@ class Collapse {
     std::vector<uint32_t> childrenOf(uint32_t node) const;
     /// Of a child: it becomes a leaf with all primitives below it, at most maxLeafSize.
     bool becomesLeaf(uint32_t node) const { return best_[node].leaf; }
-    /// The number of leaves of the binary tree below a node.
-    uint32_t leavesBelow(uint32_t node) const { return best_[node].count; }
 
   private:
     struct Best {
@@ -35,7 +33,7 @@ class Collapse {
         uint32_t leaf : 1;
     };
 
-    void solve(uint32_t node, uint32_t depth);
+    void solve(uint32_t node);
     float shared(const BinaryNode& node, uint32_t slots, uint32_t left) const;
     uint32_t bestShare(const BinaryNode& node, uint32_t slots) const;
     void collect(uint32_t node, uint32_t slots, std::vector<uint32_t>& children) const;
