@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scene/device/run_both.h"
+#include "scene/device/trees/box4.h"
 #include "scene/device/trees/parallel_partition.h"
 
 namespace limpid::scene {
@@ -22,7 +23,7 @@ constexpr float leastOverlap = 1e-3f;
 constexpr float mostOfCost = 0.9f;
 
 struct Bin {
-    Aabb bounds;
+    Box4 bounds;
     uint32_t first = 0;  ///< number of references that begin in this bin
     uint32_t last = 0;   ///< and that end here
 };
@@ -50,7 +51,7 @@ struct Split {
     uint32_t bin = 0;  ///< what ends in this bin or lower ones goes left
     float cost = std::numeric_limits<float>::max();
     uint32_t left = 0, right = 0;  ///< number of references
-    Aabb leftBounds, rightBounds;
+    Box4 leftBounds, rightBounds;
 };
 
 /// Keeps the best split between two of the bins.
@@ -94,15 +95,16 @@ Bins fillBins(std::span<const Reference> references, size_t grain, const Add& ad
 }
 
 struct Boxes {
-    Aabb all, centers;
+    Box4 all, centers;
 };
 
 /// The box of all references, and that of their centers.
 Boxes boxesOf(std::span<const Reference> references) {
     const auto add = [&](const tbb::blocked_range<size_t>& range, Boxes boxes) {
         for (size_t i = range.begin(); i < range.end(); ++i) {
-            boxes.all.grow(references[i].bounds);
-            boxes.centers.grow(references[i].bounds.center());
+            const Box4 box = Box4::of(references[i]);
+            boxes.all.grow(box);
+            boxes.centers.grow(box.center(), box.center());
         }
         return boxes;
     };
@@ -171,7 +173,7 @@ class Builder {
         if (range.count <= partSize_) return makeLeaf(node, range);
         if (partSize_ > 1) children = used_.fetch_add(2, std::memory_order_relaxed);
         const Boxes boxes = boxesOf(in(range));
-        node.bounds = boxes.all;
+        node.bounds = boxes.all.aabb();
         if (index == 0) leastOverlap_ = leastOverlap * node.bounds.halfArea();
         const Halves halves = partition(boxes, range, depth);
         const Range &left = halves.left, &right = halves.right;
@@ -193,7 +195,7 @@ class Builder {
     /// That of a part has its first reference and their number, until takeTop().
     void makeLeaf(BinaryNode& node, const Range& range) const {
         if (partSize_ > 1) {
-            node.bounds = boxesOf(in(range)).all;
+            node.bounds = boxesOf(in(range)).all.aabb();
             node.primitive = range.first;
             node.child = range.count;
         } else {
@@ -229,13 +231,15 @@ class Builder {
     };
 
     Halves partition(const Boxes& boxes, const Range& range, uint32_t depth) {
-        const Split split = depth < sahDepth_ ? objectSplit(boxes.centers, range) : Split{};
-        if (split.axis < 0) return halved(boxes.centers, range);
+        if (range.count == 2 && range.room == 0) return divided(range, 1);
+        const Aabb centers = boxes.centers.aabb();
+        const Split split = depth < sahDepth_ ? objectSplit(centers, range) : Split{};
+        if (split.axis < 0) return halved(centers, range);
         if (range.room > 0) {
-            const Split spatial = spatialSplit(boxes.all, split, range);
-            if (spatial.cost < mostOfCost * split.cost) return splitAt(spatial, boxes.all, range);
+            const Split spatial = spatialSplit(boxes.all.aabb(), split, range);
+            if (spatial.cost < mostOfCost * split.cost) return splitAt(spatial, boxes.all.aabb(), range);
         }
-        const Axis axis(split.axis, boxes.centers.lower[split.axis], boxes.centers.upper[split.axis]);
+        const Axis axis(split.axis, centers.lower[split.axis], centers.upper[split.axis]);
         const size_t left = partitionInParallel(in(range), [&](const Reference& reference) {
             return axis.binOf(reference.bounds.center()[split.axis]) <= split.bin;
         });
@@ -272,7 +276,7 @@ class Builder {
             if (!axis.usable(centers.upper[number])) continue;
             const auto add = [&](const Reference& reference, Bins& bins) {
                 Bin& bin = bins[axis.binOf(reference.bounds.center()[number])];
-                bin.bounds.grow(reference.bounds);
+                bin.bounds.grow(reference);
                 ++bin.first;
                 ++bin.last;
             };
@@ -297,7 +301,7 @@ class Builder {
         const uint32_t last = axis.binOf(reference.bounds.upper[axis.axis]);
         if (!isDivisible(reference)) {
             Bin& bin = bins[axis.binOf(reference.bounds.center()[axis.axis])];
-            bin.bounds.grow(reference.bounds);
+            bin.bounds.grow(reference);
             ++bin.first;
             ++bin.last;
             return;
@@ -311,7 +315,7 @@ class Builder {
                 reference = partOf(reference, axis.axis, plane, false);
             }
         }
-        bins[last].bounds.grow(reference.bounds);
+        bins[last].bounds.grow(reference);
     }
 
     static bool crosses(const Reference& reference, int axis, float plane) {
@@ -320,8 +324,8 @@ class Builder {
 
     /// `other` is the best split without dividing triangles.
     Split spatialSplit(const Aabb& bounds, const Split& other, const Range& range) const {
-        const Aabb overlap{glm::max(other.leftBounds.lower, other.rightBounds.lower),
-                           glm::min(other.leftBounds.upper, other.rightBounds.upper)};
+        const Aabb left = other.leftBounds.aabb(), right = other.rightBounds.aabb();
+        const Aabb overlap{glm::max(left.lower, right.lower), glm::min(left.upper, right.upper)};
         const vec3 size = overlap.size();
         Split best;
         if (glm::any(glm::lessThan(size, vec3(0.0f))) || !(overlap.halfArea() > leastOverlap_)) return best;
@@ -338,8 +342,8 @@ class Builder {
     /// Whether all of a reference goes to one side, since that is cheaper than two parts.
     enum class Side { Left, Right, Both };
     static Side sideOf(const Reference& reference, const Split& split) {
-        const auto grown = [&](Aabb box) {
-            box.grow(reference.bounds);
+        const auto grown = [&](Box4 box) {
+            box.grow(reference);
             return box.halfArea();
         };
         const auto left = static_cast<float>(split.left), right = static_cast<float>(split.right);
@@ -381,7 +385,7 @@ class Builder {
         return divided(longer, lefts);
     }
 
-    Halves halvedAgain(const Range& range) { return halved(boxesOf(in(range)).centers, range); }
+    Halves halvedAgain(const Range& range) { return halved(boxesOf(in(range)).centers.aabb(), range); }
 
     References references_;
     const Splits& splits_;
