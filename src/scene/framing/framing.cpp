@@ -1,5 +1,8 @@
 #include "scene/framing/framing.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,6 +30,10 @@ struct Box {
         lower = glm::min(lower, p);
         upper = glm::max(upper, p);
     }
+    void join(const Box& other) {
+        lower = glm::min(lower, other.lower);
+        upper = glm::max(upper, other.upper);
+    }
     bool empty() const { return lower.x > upper.x; }
     vec3 center() const { return 0.5f * (lower + upper); }
     vec3 size() const { return upper - lower; }
@@ -39,23 +46,58 @@ vec3 transformed(const mat4& m, const vec3& p) {
     return vec3(m * vec4(p, 1.0f));
 }
 
-/// Calls use(a, b, c, material) with the world positions of each triangle of the instance, at rest.
+using Triangles = tbb::blocked_range<size_t>;
+
+/// Calls use(a, b, c, material) with the world positions of triangles of the instance, at rest.
 template <typename Use>
-void forEachTriangle(const Scene& scene, const Instance& instance, const Use& use) {
+void forEachTriangle(const Scene& scene, const Instance& instance, const Triangles& triangles,
+                     const Use& use) {
     const Mesh& mesh = scene.meshes[static_cast<size_t>(instance.mesh)];
     const auto place = [&](size_t i) {
         return transformed(instance.transform, mesh.positions[mesh.indices[i]]);
     };
-    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-        const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[i / 3];
-        use(place(i), place(i + 1), place(i + 2),
+    for (size_t i = triangles.begin(); i < triangles.end(); ++i) {
+        const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[i];
+        use(place(3 * i), place(3 * i + 1), place(3 * i + 2),
             scene.materials[static_cast<size_t>(instance.material) + slot]);
     }
 }
 
+Triangles trianglesOf(const Scene& scene, const Instance& instance) {
+    constexpr size_t onOneThread = size_t{1} << 16;
+    return {0, scene.meshes[static_cast<size_t>(instance.mesh)].triangleCount(), onOneThread};
+}
+
 template <typename Use>
 void forEachTriangle(const Scene& scene, const Use& use) {
-    for (const Instance& instance : scene.instances) forEachTriangle(scene, instance, use);
+    for (const Instance& instance : scene.instances)
+        forEachTriangle(scene, instance, trianglesOf(scene, instance), use);
+}
+
+/// A sum over the triangles of an instance, on all cores: calls add(sum, a, b, c, material), and
+/// sum.join(other) with sums that began with `empty`, too. Does not depend on the threads.
+template <typename Sum, typename Add>
+Sum sumOver(const Scene& scene, const Instance& instance, const Sum& empty, const Add& add) {
+    return tbb::parallel_deterministic_reduce(
+        trianglesOf(scene, instance), empty,
+        [&](const Triangles& triangles, Sum sum) {
+            forEachTriangle(scene, instance, triangles,
+                            [&](const vec3& a, const vec3& b, const vec3& c, const Material& material) {
+                                add(sum, a, b, c, material);
+                            });
+            return sum;
+        },
+        [](Sum sum, const Sum& other) {
+            sum.join(other);
+            return sum;
+        });
+}
+
+template <typename Sum, typename Add>
+Sum sumOver(const Scene& scene, const Sum& empty, const Add& add) {
+    Sum sum = empty;
+    for (const Instance& instance : scene.instances) sum.join(sumOver(scene, instance, empty, add));
+    return sum;
 }
 
 Box looseBox(const Scene& scene) {
@@ -73,13 +115,11 @@ Box looseBox(const Scene& scene) {
 }
 
 Box exactBox(const Scene& scene) {
-    Box box;
-    forEachTriangle(scene, [&](const vec3& a, const vec3& b, const vec3& c, const Material&) {
+    return sumOver(scene, Box{}, [](Box& box, const vec3& a, const vec3& b, const vec3& c, const Material&) {
         box.grow(a);
         box.grow(b);
         box.grow(c);
     });
-    return box;
 }
 
 /// The number of times in the clip at which moving objects are checked.
@@ -134,6 +174,13 @@ struct Walls {
     bool hidesSomething() const {
         return lightInside || (somethingInside && seenFromBehind > 0.5f * covering());
     }
+    void join(const Walls& other) {
+        for (size_t i = 0; i < covered.size(); ++i) covered[i] += other.covered[i];
+        facingInward += other.facingInward;
+        seenFromBehind += other.seenFromBehind;
+        somethingInside |= other.somethingInside;
+        lightInside |= other.lightInside;
+    }
 
   private:
     float covering() const { return std::accumulate(covered.begin(), covered.end(), 0.0f); }
@@ -141,20 +188,20 @@ struct Walls {
 
 Walls findWalls(const Scene& scene, const Box& box) {
     const vec3 size = box.size();
-    Walls walls;
     const auto isInside = [&](const vec3& point) {
         const vec3 margin = 2.0f * wallDistance * size;
         return glm::all(glm::greaterThan(point, box.lower + margin)) &&
                glm::all(glm::lessThan(point, box.upper - margin));
     };
-    const auto add = [&](int axis, bool isUpper, float area, bool bothSides) {
+    const auto cover = [&](Walls& walls, int axis, bool isUpper, float area, bool bothSides) {
         const float whole = size[(axis + 1) % 3] * size[(axis + 2) % 3];
         if (!(whole > 0.0f)) return;
         walls.covered[static_cast<size_t>(2 * axis + isUpper)] += std::abs(area) / whole;
         walls.facingInward += (isUpper ? -area : area) / whole;
         if (bothSides) walls.seenFromBehind += std::abs(area) / whole;
     };
-    forEachTriangle(scene, [&](const vec3& a, const vec3& b, const vec3& c, const Material& material) {
+    const auto add = [&](Walls& walls, const vec3& a, const vec3& b, const vec3& c,
+                         const Material& material) {
         if (isInside(a) && isInside(b) && isInside(c)) {
             walls.somethingInside = true;
             walls.lightInside |= material.emission != vec3(0.0f);
@@ -165,10 +212,13 @@ Walls findWalls(const Scene& scene, const Box& box) {
         const vec3 high = glm::max(a, glm::max(b, c));
         for (int axis = 0; axis < 3; ++axis) {
             const float near = wallDistance * size[axis];
-            if (high[axis] <= box.lower[axis] + near) add(axis, false, area[axis], material.doubleSided);
-            if (low[axis] >= box.upper[axis] - near) add(axis, true, area[axis], material.doubleSided);
+            if (high[axis] <= box.lower[axis] + near)
+                cover(walls, axis, false, area[axis], material.doubleSided);
+            if (low[axis] >= box.upper[axis] - near)
+                cover(walls, axis, true, area[axis], material.doubleSided);
         }
-    });
+    };
+    Walls walls = sumOver(scene, Walls{}, add);
     for (const PunctualLight& light : scene.lights)
         walls.lightInside |= light.kind != PunctualLight::Kind::Directional && isInside(light.position);
     return walls;
@@ -207,23 +257,43 @@ Camera throughOpening(const Box& box, const vec3& towardsEye) {
     return camera;
 }
 
-/// Calls use(point) with everything visible at the clip's start; for a very large scene, with the corners of
-/// its box.
-template <typename Use>
-void forEachFirstPoint(const Scene& scene, const Box& box, bool isExact, const Use& use) {
-    for (int i = 0; i < 8 && !isExact; ++i) use(box.corner(i));
+/// Adds everything visible at the clip's start to `empty`, by add(point) and join(other); of a very large
+/// scene, the corners of its box.
+template <typename Sum>
+Sum sumOverFirstPoints(const Scene& scene, const Box& box, bool isExact, const Sum& empty) {
+    Sum sum = empty;
+    for (int i = 0; i < 8 && !isExact; ++i) sum.add(box.corner(i));
     for (const Instance& instance : scene.instances) {
         if (!isExact || (scene.clip != none && instance.movement != Movement::Still)) continue;
-        forEachTriangle(scene, instance, [&](const vec3& a, const vec3& b, const vec3& c, const Material&) {
-            use(a);
-            use(b);
-            use(c);
-        });
+        sum.join(sumOver(scene, instance, empty,
+                         [](Sum& part, const vec3& a, const vec3& b, const vec3& c, const Material&) {
+                             part.add(a);
+                             part.add(b);
+                             part.add(c);
+                         }));
     }
     forEachClipPoint(scene, [&](const vec3& point, int moment) {
-        if (moment == 0) use(point);
+        if (moment == 0) sum.add(point);
     });
+    return sum;
 }
+
+/// What fromOutside() must know of all points.
+struct Extents {
+    TightView all, half;
+    Box box;
+
+    void add(const vec3& point) {
+        all.add(point);
+        half.add(point);
+        box.grow(point);
+    }
+    void join(const Extents& other) {
+        all.join(other.all);
+        half.join(other.half);
+        box.join(other.box);
+    }
+};
 
 /// Moves so close that the whole movement just fits, unless that would make the first pose too small.
 Camera fromOutside(const Scene& scene, const Box& box, bool isExact, const vec3& towardsEye) {
@@ -231,21 +301,17 @@ Camera fromOutside(const Scene& scene, const Box& box, bool isExact, const vec3&
     Camera camera;
     camera.verticalFov = outsideFov;
     camera.toWorld = lookFrom(vec3(0.0f), towardsEye);
-    Box first;
-    TightView all(camera.toWorld, box.center(), outsideFov, 1.0f - 2.0f * margin);
-    TightView half(camera.toWorld, box.center(), outsideFov, 1.1f * least);
-    forEachFirstPoint(scene, box, isExact, [&](const vec3& point) {
-        all.add(point);
-        half.add(point);
-        first.grow(point);
-    });
+    Extents first =
+        sumOverFirstPoints(scene, box, isExact,
+                           Extents{TightView(camera.toWorld, box.center(), outsideFov, 1.0f - 2.0f * margin),
+                                   TightView(camera.toWorld, box.center(), outsideFov, 1.1f * least), Box{}});
+    TightView& all = first.all;
     forEachClipPoint(scene, [&](const vec3& point, int) { all.add(point); });
-    const float diagonal = glm::length(first.size());
+    const float diagonal = glm::length(first.box.size());
     const float room = diagonal > 0.0f ? 0.05f * diagonal : 1e-3f;
     camera.toWorld[3] = vec4(all.eye(room), 1.0f);
-    PictureSize size(camera.toWorld, outsideFov);
-    forEachFirstPoint(scene, box, isExact, [&](const vec3& point) { size.add(point); });
-    if (size.largest() < least) camera.toWorld[3] = vec4(half.eye(room), 1.0f);
+    const PictureSize size = sumOverFirstPoints(scene, box, isExact, PictureSize(camera.toWorld, outsideFov));
+    if (size.largest() < least) camera.toWorld[3] = vec4(first.half.eye(room), 1.0f);
     return camera;
 }
 

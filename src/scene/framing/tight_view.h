@@ -25,6 +25,12 @@ class TightView {
         nearest_ = std::max(nearest_, p.z);
     }
 
+    /// Adds the points of another one with the same view.
+    void join(const TightView& other) {
+        edges_ = glm::max(edges_, other.edges_);
+        nearest_ = std::max(nearest_, other.nearest_);
+    }
+
     /// Stays at least `room` in front of the nearest point.
     vec3 eye(float room) const {
         const double distance = std::max({(edges_[0] + edges_[1]) / (2.0 * slope_),
@@ -51,6 +57,11 @@ class PictureSize {
         const vec2 at = vec2(p) / (2.0f * slope_ * std::max(-p.z, 1e-20f));
         lower_ = glm::min(lower_, at);
         upper_ = glm::max(upper_, at);
+    }
+    /// Adds the points of another one with the same view.
+    void join(const PictureSize& other) {
+        lower_ = glm::min(lower_, other.lower_);
+        upper_ = glm::max(upper_, other.upper_);
     }
     float largest() const { return std::max(upper_.x - lower_.x, upper_.y - lower_.y); }
 
