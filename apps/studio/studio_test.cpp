@@ -115,7 +115,7 @@ TEST_F(StudioTest, AnOpenShutterBlursWhatMovesAtRest) {
     studio->finish();
 }
 
-/// With an open shutter, the scene stands at the last sample's instant.
+/// After a blurred frame the scene stands at the last sample's instant, which picking must not use.
 TEST_F(StudioTest, TheCameraTurnsToWhatIsSeenAtTheFramesTime) {
     std::vector<vec3> targets;
     for (const double shutter : {0.0, 40.0}) {

@@ -19,7 +19,7 @@ class Picker {
     }
 
     /// Where the ray through the pixel's centre meets the scene, world space; none where it meets nothing.
-    /// `moved`: what is changed in the scene before that. Waits for the device.
+    /// `moved`: applied to the device's scene first; it stays so. Waits for the device.
     std::optional<vec3> pointSeen(scene::GpuScene& scene, const std::optional<scene::SceneFrame>& moved,
                                   const CameraParams& camera, gpu::Extent extent, uint32_t x, uint32_t y);
 

@@ -28,19 +28,22 @@ std::optional<scene::SceneFrame> Stage::nextFrame(const std::optional<Step>& ste
     const bool moves = animator_ && step;
     lightsSent_ = std::exchange(lightsChanged_, false);
     if (!moves && !lightsSent_) return std::nullopt;
-    scene::SceneFrame frame;
-    if (animator_)
-        frame = animator_->frame(step ? step->to : time, step ? step->from : time);
-    else
-        frame.params = onDevice_->params();
-    live_->setParams(frame.params);
+    scene::SceneFrame frame = frameOf(step.value_or(Step{time, time}));
     if (lightsSent_) live_->addTo(frame);
     return frame;
 }
 
 std::optional<scene::SceneFrame> Stage::standAt(double time) const {
     if (!animator_) return std::nullopt;
-    scene::SceneFrame frame = animator_->frame(time, time);
+    return frameOf({time, time});
+}
+
+scene::SceneFrame Stage::frameOf(const Step& step) const {
+    scene::SceneFrame frame;
+    if (animator_)
+        frame = animator_->frame(step.to, step.from);
+    else
+        frame.params = onDevice_->params();
     live_->setParams(frame.params);
     return frame;
 }

@@ -45,6 +45,9 @@ class Stage {
     std::optional<scene::SceneFrame> standAt(double time) const;
 
   private:
+    /// Without lights.
+    scene::SceneFrame frameOf(const Step& step) const;
+
     scene::Scene scene_;
     std::vector<scene::LightControl> originalLights_, lights_;
     std::optional<scene::LiveLights> live_;

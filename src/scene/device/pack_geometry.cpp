@@ -28,7 +28,7 @@ vec3 transformedPoint(const mat4& matrix, const vec3& p) {
     return vec3(matrix * vec4(p, 1.0f));
 }
 
-/// Of directions.
+/// Transforms normals and tangents.
 struct Transform {
     mat4 matrix;
     mat3 normalMatrix;
@@ -85,8 +85,9 @@ class GeometryPacker {
     };
     /// The triangles of one tree.
     struct Triangles {
-        const Mesh* mesh =
-            nullptr;  ///< of all of them, in its own space; null: those of instances, in the world
+        /// If all are of one mesh, and stay in its space. Null: records name instances, and corners are in
+        /// world space.
+        const Mesh* mesh = nullptr;
         RawVector<TriangleRecord> records;
     };
     struct Tree {
@@ -224,7 +225,7 @@ class GeometryPacker {
     Bvh buildTree(const Triangles& triangles, const std::vector<bool>& divisible) {
         const size_t count = triangles.records.size();
         const Progress progress = progressOf(count);
-        if (count <= maxDivisibleTriangles) {
+        if (count <= maxSplitTriangles) {
             RawVector<Corners> corners(count);
             forEachIndex(count, [&](size_t i) { corners[i] = cornersOf(triangles, i); });
             return buildTriangleBvh(corners, divisible, progress);
@@ -248,7 +249,7 @@ class GeometryPacker {
         const uint32_t root = appendNodes(bvh.nodes, [&](uint32_t child, uint32_t firstNode) {
             return child + (BvhRef::isLeaf(child) ? firstTriangle : firstNode);
         });
-        bvh.nodes = {};
+        bvh.nodes = RawVector<BvhNode>();  // frees them, which {} would not
         noteRepeated(bvh.order, isOpaque.size(), firstTriangle);
         data_.bvhTriangles.resize(data_.bvhTriangles.size() + bvh.order.size() * layout::BVH_TRIANGLE_TEXELS);
         forEachIndex(bvh.order.size(), [&](size_t i) {

@@ -26,7 +26,8 @@ void runBoth(const First& first, const Second& second) {
     if (faultOfSecond) std::rethrow_exception(faultOfSecond);
 }
 
-/// Calls use(i) for 0 to count - 1 in the same way.
+/// Calls use(first) to use(first + count - 1) at the same time. All are called, even if one throws; then
+/// throws what the first of them threw.
 template <typename Use>
 void runAll(size_t count, const Use& use, size_t first = 0) {
     if (count == 0) return;

@@ -78,19 +78,19 @@ void forEachTriangle(const Scene& scene, const Use& use) {
 /// sum.join(other) with sums that began with `empty`, too. Does not depend on the threads.
 template <typename Sum, typename Add>
 Sum sumOver(const Scene& scene, const Instance& instance, const Sum& empty, const Add& add) {
-    return tbb::parallel_deterministic_reduce(
-        trianglesOf(scene, instance), empty,
-        [&](const Triangles& triangles, Sum sum) {
-            forEachTriangle(scene, instance, triangles,
-                            [&](const vec3& a, const vec3& b, const vec3& c, const Material& material) {
-                                add(sum, a, b, c, material);
-                            });
-            return sum;
-        },
-        [](Sum sum, const Sum& other) {
-            sum.join(other);
-            return sum;
-        });
+    const auto sumOf = [&](const Triangles& triangles, Sum sum) {
+        forEachTriangle(scene, instance, triangles,
+                        [&](const vec3& a, const vec3& b, const vec3& c, const Material& material) {
+                            add(sum, a, b, c, material);
+                        });
+        return sum;
+    };
+    const Triangles all = trianglesOf(scene, instance);
+    if (!all.is_divisible()) return sumOf(all, empty);
+    return tbb::parallel_deterministic_reduce(all, empty, sumOf, [](Sum sum, const Sum& other) {
+        sum.join(other);
+        return sum;
+    });
 }
 
 template <typename Sum, typename Add>

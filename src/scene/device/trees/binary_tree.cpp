@@ -10,6 +10,7 @@
 
 #include "scene/device/run_both.h"
 #include "scene/device/trees/box4.h"
+#include "scene/device/trees/cut.h"
 #include "scene/device/trees/parallel_partition.h"
 
 namespace limpid::scene {
@@ -102,7 +103,7 @@ struct Boxes {
 Boxes boxesOf(std::span<const Reference> references) {
     const auto add = [&](const tbb::blocked_range<size_t>& range, Boxes boxes) {
         for (size_t i = range.begin(); i < range.end(); ++i) {
-            const Box4 box = Box4::of(references[i]);
+            const Box4 box = Box4::of(references[i].bounds);
             boxes.all.grow(box);
             boxes.centers.grow(box.center(), box.center());
         }
@@ -120,7 +121,7 @@ Boxes boxesOf(std::span<const Reference> references) {
 
 class Builder {
   public:
-    /// Nodes of up to `partSize` references become leaves.
+    /// Nodes of up to `partSize` references become leaves: parts, if it is more than 1.
     Builder(References references, uint32_t sahDepth, const Splits& splits, uint32_t partSize,
             const Progress& progress)
         : references_(std::move(references)),
@@ -132,7 +133,7 @@ class Builder {
         references_.resize(count + splits.most);
         nodes_.resize(2 * references_.size() - 1);  // memory that is not written is not used
         build(0, 1, {0, count, splits.most}, 0);
-        if (splits.most > 0 || partSize > 1) putInOrder();
+        if (splits.most > 0 || partSize > 1) nodes_ = subtreeOf(nodes_, 0);
     }
 
     BinaryTree take() { return std::move(nodes_); }
@@ -172,6 +173,7 @@ class Builder {
         BinaryNode& node = nodes_[index] = {};
         if (range.count <= partSize_) return makeLeaf(node, range);
         if (partSize_ > 1) children = used_.fetch_add(2, std::memory_order_relaxed);
+        if (range.count > parallelThreshold) progress_.at(0.0);  // ends here if it is given up
         const Boxes boxes = boxesOf(in(range));
         node.bounds = boxes.all.aabb();
         if (index == 0) leastOverlap_ = leastOverlap * node.bounds.halfArea();
@@ -192,7 +194,8 @@ class Builder {
         }
     }
 
-    /// That of a part has its first reference and their number, until takeTop().
+    /// A leaf that is a part holds its range of references until takeTop(): the first in `primitive`, their
+    /// number in `child`.
     void makeLeaf(BinaryNode& node, const Range& range) const {
         if (partSize_ > 1) {
             node.bounds = boxesOf(in(range)).all.aabb();
@@ -201,22 +204,6 @@ class Builder {
         } else {
             node.bounds = references_[range.first].bounds;
             node.primitive = references_[range.first].primitive;
-        }
-    }
-
-    /// Numbers the nodes as a traversal meets them, without gaps.
-    void putInOrder() {
-        const BinaryTree from = std::exchange(nodes_, {});
-        nodes_.push_back(from[0]);
-        std::vector<uint32_t> open{0};
-        while (!open.empty()) {
-            const uint32_t index = open.back();
-            open.pop_back();
-            if (nodes_[index].isLeaf()) continue;
-            const auto children = static_cast<uint32_t>(nodes_.size());
-            const auto first = from.begin() + std::exchange(nodes_[index].child, children);
-            nodes_.insert(nodes_.end(), first, first + 2);
-            open.insert(open.end(), {children + 1, children});
         }
     }
 
@@ -276,7 +263,7 @@ class Builder {
             if (!axis.usable(centers.upper[number])) continue;
             const auto add = [&](const Reference& reference, Bins& bins) {
                 Bin& bin = bins[axis.binOf(reference.bounds.center()[number])];
-                bin.bounds.grow(reference);
+                bin.bounds.grow(Box4::of(reference.bounds));
                 ++bin.first;
                 ++bin.last;
             };
@@ -301,7 +288,7 @@ class Builder {
         const uint32_t last = axis.binOf(reference.bounds.upper[axis.axis]);
         if (!isDivisible(reference)) {
             Bin& bin = bins[axis.binOf(reference.bounds.center()[axis.axis])];
-            bin.bounds.grow(reference);
+            bin.bounds.grow(Box4::of(reference.bounds));
             ++bin.first;
             ++bin.last;
             return;
@@ -311,11 +298,11 @@ class Builder {
         for (uint32_t bin = first; bin < last; ++bin) {
             const float plane = axis.planeBefore(bin + 1);
             if (crosses(reference, axis.axis, plane)) {
-                bins[bin].bounds.grow(partOf(reference, axis.axis, plane, true).bounds);
+                bins[bin].bounds.grow(Box4::of(partOf(reference, axis.axis, plane, true).bounds));
                 reference = partOf(reference, axis.axis, plane, false);
             }
         }
-        bins[last].bounds.grow(reference);
+        bins[last].bounds.grow(Box4::of(reference.bounds));
     }
 
     static bool crosses(const Reference& reference, int axis, float plane) {
@@ -343,7 +330,7 @@ class Builder {
     enum class Side { Left, Right, Both };
     static Side sideOf(const Reference& reference, const Split& split) {
         const auto grown = [&](Box4 box) {
-            box.grow(reference);
+            box.grow(Box4::of(reference.bounds));
             return box.halfArea();
         };
         const auto left = static_cast<float>(split.left), right = static_cast<float>(split.right);
@@ -405,7 +392,7 @@ BinaryTree buildBinaryTree(References references, uint32_t sahDepth, const Split
 }
 
 TreeTop buildTreeTop(References references, uint32_t sahDepth, uint32_t partSize, const Progress& progress) {
-    return Builder(std::move(references), sahDepth, {}, partSize, progress).takeTop();
+    return Builder(std::move(references), sahDepth, {}, std::max(partSize, 2u), progress).takeTop();
 }
 
 }  // namespace limpid::scene

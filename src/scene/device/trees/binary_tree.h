@@ -68,7 +68,7 @@ struct TreeTop {
     References references;
 };
 
-/// Builds a tree like buildBinaryTree(), but ends at nodes of up to `partSize` references.
+/// Builds a tree like buildBinaryTree(), but ends at nodes of up to `partSize` references, at least 2.
 TreeTop buildTreeTop(References references, uint32_t sahDepth, uint32_t partSize,
                      const Progress& progress = {});
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "scene/device/trees/binary_tree.h"
+#include "scene/device/trees/aabb.h"
 
 namespace limpid::scene {
 
@@ -24,26 +24,19 @@ struct Box4 {
         upper = high > upper ? high : upper;
     }
     void grow(const Box4& other) { grow(other.lower, other.upper); }
-    void grow(const Aabb& box) {
-        grow(Float4{box.lower.x, box.lower.y, box.lower.z, 0.0f},
-             Float4{box.upper.x, box.upper.y, box.upper.z, 0.0f});
-    }
-    void grow(const Reference& reference) {
-        const Box4 box = of(reference);
-        grow(box.lower, box.upper);
-    }
-    /// Reads four numbers each: those behind `lower` are `upper`, and behind that is the primitive.
-    static Box4 of(const Reference& reference) {
-        static_assert(offsetof(Aabb, lower) == 0 && offsetof(Aabb, upper) == 12 && sizeof(Reference) == 28);
-        const auto* const bytes = reinterpret_cast<const std::byte*>(&reference);
+    /// Reads four numbers each: those of `lower` and the next one, and those of `upper` and the one before.
+    static Box4 of(const Aabb& aabb) {
+        static_assert(offsetof(Aabb, lower) == 0 && offsetof(Aabb, upper) == 12 && sizeof(Aabb) == 24);
+        const auto* const bytes = reinterpret_cast<const std::byte*>(&aabb);
         Box4 box;
         std::memcpy(&box.lower, bytes, sizeof(Float4));
-        std::memcpy(&box.upper, bytes + sizeof(vec3), sizeof(Float4));
+        std::memcpy(&box.upper, bytes + sizeof(Aabb) - sizeof(Float4), sizeof(Float4));
+        box.upper = __builtin_shufflevector(box.upper, box.upper, 1, 2, 3, 0);
         return box;
     }
     /// As Aabb::center().
     Float4 center() const { return 0.5f * lower + 0.5f * upper; }
-    /// As Aabb::halfArea(), of a box that is not empty.
+    /// As Aabb::halfArea(); infinite for an empty box, so that no split with one is chosen.
     float halfArea() const {
         const Float4 s = upper - lower;
         return s[0] * s[1] + s[1] * s[2] + s[2] * s[0];

@@ -66,8 +66,12 @@ class WideBuilder {
                 wide.push_back({leaf(child), node.bounds});
                 continue;
             }
-            wide.push_back({BvhRef::node(static_cast<uint32_t>(out_.nodes.size())), node.bounds});
             const bool isPart = !parts_.empty() && node.isLeaf();
+            if (isPart && isOneLeaf(parts_[node.primitive])) {
+                wide.push_back({leafOfPart(node.primitive), node.bounds});
+                continue;
+            }
+            wide.push_back({BvhRef::node(static_cast<uint32_t>(out_.nodes.size())), node.bounds});
             deepest = std::max(deepest, isPart ? reservePart(node.primitive) : emit(child));
         }
         out_.nodes[index] = makeBvhNode(wide);
@@ -80,7 +84,7 @@ class WideBuilder {
             const Bvh part = std::exchange(parts_[i], {});
             const Place& place = places_[i];
             auto out = out_.nodes.begin() + place.node;
-            for (BvhNode node : part.nodes) {
+            for (BvhNode node : isOneLeaf(part) ? std::span<const BvhNode>() : part.nodes) {
                 for (uint32_t& child : node.children)
                     child += BvhRef::isLeaf(child) ? place.entry : place.node;
                 *out++ = node;
@@ -101,6 +105,19 @@ class WideBuilder {
         out_.nodes.resize(out_.nodes.size() + part.nodes.size());
         out_.order.resize(out_.order.size() + part.order.size());
         return part.stackSize;
+    }
+
+    /// Such a part needs no node.
+    static bool isOneLeaf(const Bvh& part) {
+        const BvhNode& root = part.nodes.front();
+        return !root.hasChild(1) && BvhRef::isLeaf(root.children[0]);
+    }
+
+    uint32_t leafOfPart(uint32_t index) {
+        const Bvh& part = parts_[index];
+        places_[index] = {0, static_cast<uint32_t>(out_.order.size())};
+        out_.order.resize(out_.order.size() + part.order.size());
+        return part.nodes.front().children[0] + places_[index].entry;
     }
 
     uint32_t leaf(uint32_t binary) {
@@ -166,7 +183,7 @@ constexpr size_t hugeTree = size_t{1} << 23;
 
 /// Of reinsertion.
 uint32_t roundsFor(size_t triangles) {
-    return triangles > maxDivisibleTriangles ? 1 : 5;
+    return triangles > maxSplitTriangles ? 1 : 5;
 }
 
 void checkCount(size_t primitives) {
@@ -228,7 +245,18 @@ Bvh wideBvh(const BinaryTree& tree, uint32_t maxLeafSize) {
     return joined(cut.top, std::move(parts));
 }
 
-/// Of the time that a tree takes that is built in parts (measured).
+/// With room for more.
+References referencesTo(std::span<const Corners> triangles, size_t room = 0) {
+    References references;
+    references.reserve(triangles.size() + room);
+    references.resize(triangles.size());
+    forEachIndex(triangles.size(), [&](size_t i) {
+        references[i] = {boxOf(triangles[i]), static_cast<uint32_t>(i)};
+    });
+    return references;
+}
+
+/// Share of the time to build a tree in parts that the upper nodes take (measured).
 constexpr double shareOfTop = 0.4;
 
 Bvh movedBvh(References triangles, const Splits& splits, const Progress& progress) {
@@ -257,15 +285,17 @@ Bvh buildBvhInParts(References references, uint32_t maxLeafSize, uint32_t partSi
     TreeTop top = buildTreeTop(std::move(references), maxSahDepth, partSize, progress.part(0.0, shareOfTop));
     std::vector<Bvh> parts(top.parts.size());
     std::atomic<size_t> done = 0;
+    const Progress rest = progress.part(shareOfTop, 1.0);
     runAll(parts.size(), [&](size_t i) {
+        rest.at(done, parts.size());  // does not begin if all is given up
         const TreeTop::Part& part = top.parts[i];
         const auto first = top.references.begin() + part.first;
         const BinaryTree tree =
             buildBinaryTree({first, first + part.count}, maxSahDepth - std::min(part.depth, maxSahDepth));
         parts[i] = smallBvh(tree, maxLeafSize);
-        progress.part(shareOfTop, 1.0).at(++done, parts.size());
+        rest.at(++done, parts.size());
     });
-    top.references = {};
+    top.references = References();  // frees them, which {} would not
     return joined(top.nodes, std::move(parts));
 }
 
@@ -277,13 +307,9 @@ Bvh buildTriangleBvh(References triangles, const Progress& progress) {
 
 Bvh buildTriangleBvh(std::span<const Corners> triangles, const std::vector<bool>& divisible,
                      const Progress& progress) {
+    if (triangles.size() > maxSplitTriangles) return buildTriangleBvh(referencesTo(triangles), progress);
     const auto most = static_cast<size_t>(std::count(divisible.begin(), divisible.end(), true));
-    References references;
-    references.reserve(triangles.size() + most);
-    references.resize(triangles.size());
-    forEachIndex(triangles.size(), [&](size_t i) {
-        references[i] = {boxOf(triangles[i]), static_cast<uint32_t>(i)};
-    });
+    References references = referencesTo(triangles, most);
     return movedBvh(std::move(references), {triangles, divisible, static_cast<uint32_t>(most)}, progress);
 }
 

@@ -63,19 +63,20 @@ struct Bvh {
 Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth = maxSahDepth);
 
 /// The same in less memory, since the tree is built part by part: `partSize` is the largest number of
-/// primitives in a part. Throws Cancelled as `progress` does.
+/// primitives in a part, at least 2. Throws Cancelled as `progress` does.
 Bvh buildBvhInParts(References references, uint32_t maxLeafSize, uint32_t partSize,
                     const Progress& progress = {});
+
+/// Triangles are split in trees of up to so many.
+inline constexpr size_t maxSplitTriangles = size_t{1} << 20;
 
 /// The same over triangles, with up to four in a leaf. Takes longer, and rays are faster: triangles are split
 /// where `divisible` (by triangle) allows it, so that `order` may have one of them more than once (but no
 /// leaf has), and nodes are moved (reinsertion.h). Throws Cancelled as `progress` does.
 Bvh buildTriangleBvh(std::span<const Corners> triangles, const std::vector<bool>& divisible,
                      const Progress& progress = {});
-/// For more triangles than this, that would take too long.
-inline constexpr size_t maxDivisibleTriangles = size_t{1} << 20;
-/// The same over the boxes of many triangles. None is split, and nodes are moved less; those of more than
-/// eight million triangles not at all.
+/// The same over the boxes of triangles, none of which is split. Nodes of trees of more than
+/// maxSplitTriangles are moved less, those of more than eight million triangles not at all.
 Bvh buildTriangleBvh(References triangles, const Progress& progress = {});
 
 /// A child of a node being built.

@@ -11,8 +11,12 @@
 #include <numeric>
 #include <random>
 #include <span>
+#include <stdexcept>
 #include <stop_token>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "scene/device/run_both.h"
 #include "scene/device/trees/collapse.h"
@@ -213,10 +217,10 @@ References referencesOf(const std::vector<Corners>& triangles) {
     return references;
 }
 
-TEST(TriangleBvh, BuiltInPartsIsWholeAndCostsNoMore) {
+TEST(TriangleBvh, BuiltInPartsIsWholeAndCostsLittleMore) {
     const std::vector<Corners> triangles = mixedTriangles(20000);
     const double whole = costOf(buildBvh(boxesOf(triangles), 4));
-    // The root of a part is a node of its own.
+    // The root of a part is a node of its own, or a leaf.
     const std::vector<std::pair<uint32_t, double>> most{{2, 1.4}, {100, 1.03}, {3000, 1.004}, {20000, 1.0}};
     for (const auto& [partSize, share] : most) {
         const Bvh bvh = buildBvhInParts(referencesOf(triangles), 4, partSize);
@@ -238,8 +242,37 @@ TEST(TriangleBvh, BuiltInPartsIsWholeAndCostsNoMore) {
     EXPECT_EQ(buildBvhInParts(referencesOf({triangles[0]}), 4, 100).order.size(), 1u);
 }
 
+/// Several threads make the tree, which one triangle spans.
+TEST(TriangleBvh, ALargeTriangleBesideManySmallOnesIsALeafAtTheTop) {
+    std::vector<Corners> triangles = mixedTriangles(80000);
+    for (Corners& triangle : triangles) {
+        for (vec3& corner : triangle) corner = 0.001f * corner;
+    }
+    triangles.push_back({vec3(-1000, 0, 0), vec3(1000, 0, 0), vec3(0, 1000, 0)});
+    const auto large = static_cast<uint32_t>(triangles.size() - 1);
+    for (const bool inParts : {false, true}) {
+        const Bvh bvh = inParts ? buildBvhInParts(referencesOf(triangles), 4, 1u << 15)
+                                : buildTriangleBvh(referencesOf(triangles));
+        Met met{std::vector<int>(bvh.nodes.size()), std::vector<int>(bvh.order.size())};
+        traverse(bvh, triangles, 0, met);
+        EXPECT_EQ(std::count(met.nodes.begin(), met.nodes.end(), 1), bvh.nodes.size());
+        EXPECT_EQ(std::count(met.entries.begin(), met.entries.end(), 1), triangles.size());
+        EXPECT_EQ(met.outside, 0u);
+        bool found = false;
+        for (uint32_t child = 0; child < 4; ++child) {
+            const uint32_t ref = bvh.nodes[0].children[child];
+            if (!bvh.nodes[0].hasChild(child) || !BvhRef::isLeaf(ref)) continue;
+            found |= bvh.order[BvhRef::first(ref)] == large;
+        }
+        EXPECT_TRUE(found) << inParts;
+    }
+}
+
 TEST(TriangleBvh, BuiltInPartsCanBeGivenUp) {
     const std::vector<Corners> triangles = mixedTriangles(10000);
+    const Progress givenUp = Progress::watched();
+    givenUp.cancel();
+    EXPECT_THROW(buildBvhInParts(referencesOf(triangles), 4, 64, givenUp), Cancelled);
     for (int percent = 0; percent < 100; percent += 20) {
         const Progress progress = Progress::watched();
         std::jthread canceller([&](const std::stop_token& isBuilt) {
@@ -252,6 +285,26 @@ TEST(TriangleBvh, BuiltInPartsCanBeGivenUp) {
         }
         canceller.request_stop();
     }
+}
+
+TEST(RunAll, CallsAllAndThrowsTheFirstFault) {
+    for (const size_t count : {0, 1, 2, 7, 100}) {
+        std::vector<std::atomic<int>> calls(count);
+        runAll(count, [&](size_t i) { ++calls[i]; });
+        for (const std::atomic<int>& times : calls) EXPECT_EQ(times, 1);
+    }
+    std::atomic<int> called = 0;
+    const auto throwing = [&](size_t i) {
+        ++called;
+        if (i % 5 == 3) throw std::runtime_error(std::to_string(i));
+    };
+    try {
+        runAll(20, throwing);
+        ADD_FAILURE();
+    } catch (const std::runtime_error& fault) {
+        EXPECT_STREQ(fault.what(), "3");
+    }
+    EXPECT_EQ(called, 20);
 }
 
 TEST(RunBoth, FinishesOneWhenTheOtherThrows) {

@@ -26,20 +26,15 @@ void countLeaves(const BinaryTree& tree, uint32_t index, uint32_t depth, RawVect
     counts[index] = counts[node.child] + counts[node.child + 1];
 }
 
-/// A copy of the tree below a node, in the order of a traversal. Nodes at which `ends` holds become leaves:
-/// `primitiveOf` returns theirs.
-template <typename Ends, typename PrimitiveOf>
-BinaryTree copied(const BinaryTree& tree, uint32_t root, const Ends& ends, const PrimitiveOf& primitiveOf) {
+/// A copy of the tree below a node, in the order of a traversal. It ends at nodes where `ends` holds.
+template <typename Ends>
+BinaryTree copied(const BinaryTree& tree, uint32_t root, const Ends& ends) {
     BinaryTree copy{tree[root]};
     std::vector<std::pair<uint32_t, uint32_t>> open{{root, 0}};  // a node, and its copy
     while (!open.empty()) {
         const auto [from, to] = open.back();
         open.pop_back();
-        if (ends(from)) {
-            copy[to].child = 0;
-            copy[to].primitive = primitiveOf(from);
-            continue;
-        }
+        if (ends(from, copy[to])) continue;
         const uint32_t child = tree[from].child;
         const auto children = static_cast<uint32_t>(copy.size());
         copy[to].child = children;
@@ -56,19 +51,17 @@ Cut cutTree(const BinaryTree& tree, uint32_t most) {
     RawVector<uint32_t> counts(tree.size());
     countLeaves(tree, 0, 0, counts);
     Cut cut;
-    cut.top = copied(
-        tree, 0, [&](uint32_t node) { return counts[node] <= most; },
-        [&](uint32_t node) {
-            cut.roots.push_back(node);
-            return static_cast<uint32_t>(cut.roots.size() - 1);
-        });
+    cut.top = copied(tree, 0, [&](uint32_t from, BinaryNode& copy) {
+        if (counts[from] > most) return false;
+        copy = {copy.bounds, 0, static_cast<uint32_t>(cut.roots.size())};
+        cut.roots.push_back(from);
+        return true;
+    });
     return cut;
 }
 
 BinaryTree subtreeOf(const BinaryTree& tree, uint32_t root) {
-    return copied(
-        tree, root, [&](uint32_t node) { return tree[node].isLeaf(); },
-        [&](uint32_t node) { return tree[node].primitive; });
+    return copied(tree, root, [](uint32_t, const BinaryNode& copy) { return copy.isLeaf(); });
 }
 
 }  // namespace limpid::scene

@@ -16,7 +16,7 @@ struct Cut {
 /// Cuts off the largest subtrees of up to `most` leaves, on all cores.
 Cut cutTree(const BinaryTree& tree, uint32_t most);
 
-/// A copy of the tree below a node.
+/// A copy of the tree below a node, in the order of a traversal and without gaps. Leaves stay as they are.
 BinaryTree subtreeOf(const BinaryTree& tree, uint32_t root);
 
 }  // namespace limpid::scene
