@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/freed_memory.h"
 #include "image/tonemap.h"
 #include "renderer/frame/reset_rule.h"
 #include "renderer/sequence/sequence.h"
@@ -214,6 +215,9 @@ void RenderLoop::awaitFrame() {
     const gpu::Extent extent = main_.settings().extent;
     if (device_.pipelineCount() == frame.pipelines)
         resolution_.note(uint64_t{extent.width} * extent.height, seconds);
+    if (device_.isCpu() &&
+        std::exchange(pipelinesBefore_, device_.pipelineCount()) != device_.pipelineCount())
+        returnFreedMemory();  // of the driver's compiler
     if (!due(lastTimes_, betweenTimes)) return;
     facts_.timings.addPasses(main_.renderer().passTimes());
     facts_.memoryBytes = device_.allocatedBytes();

@@ -199,8 +199,9 @@ class RenderLoop {
     std::vector<std::string> toSave_;              ///< extensions of pictures that were asked for
     float fovOfLast_ = 0.0f;                       ///< degrees
     Shutter blurOfLast_;
-    bool other_ = false;  ///< isOther(), for the next frame
-    float speed_ = 1.0f;  ///< of flying, world units a second
+    size_t pipelinesBefore_ = 0;  ///< when the last frame had been computed
+    bool other_ = false;          ///< isOther(), for the next frame
+    float speed_ = 1.0f;          ///< of flying, world units a second
     Clock::time_point lastTimes_{}, lastSources_{}, lastFrame_{};
     bool frameBefore_ = false;
     Clock::time_point messageSince_{};
