@@ -213,11 +213,10 @@ void RenderLoop::awaitFrame() {
     facts_.renderMilliseconds = seconds * 1e3;
     // A frame that had to compile shaders says nothing of the others.
     const gpu::Extent extent = main_.settings().extent;
-    if (device_.pipelineCount() == frame.pipelines)
-        resolution_.note(uint64_t{extent.width} * extent.height, seconds);
-    if (device_.isCpu() &&
-        std::exchange(pipelinesBefore_, device_.pipelineCount()) != device_.pipelineCount())
-        returnFreedMemory();  // of the driver's compiler
+    const size_t pipelines = device_.pipelineCount();
+    if (pipelines == frame.pipelines) resolution_.note(uint64_t{extent.width} * extent.height, seconds);
+    if (device_.isCpu() && pipelines != pipelinesBefore_) returnFreedMemory();  // of the driver's compiler
+    pipelinesBefore_ = pipelines;
     if (!due(lastTimes_, betweenTimes)) return;
     facts_.timings.addPasses(main_.renderer().passTimes());
     facts_.memoryBytes = device_.allocatedBytes();
