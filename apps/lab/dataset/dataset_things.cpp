@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/model/transform.h"
+
 namespace limpid::cli {
 namespace {
 
@@ -32,7 +34,7 @@ const scene::Instance* surroundingsOf(const scene::Scene& scene) {
 scene::Aabb boundsOf(const scene::Scene& scene, const scene::Instance& instance) {
     scene::Aabb bounds;
     for (const vec3& position : scene.meshes[static_cast<size_t>(instance.mesh)].positions)
-        bounds.grow(vec3(instance.transform * vec4(position, 1.0f)));
+        bounds.grow(scene::transformPoint(instance.transform, position));
     return bounds;
 }
 

@@ -10,6 +10,7 @@
 #include "base/for_each_index.h"
 #include "scene/device/pack.h"
 #include "scene/device/trees/top_tree.h"
+#include "scene/model/transform.h"
 
 namespace limpid::scene {
 namespace {
@@ -22,10 +23,6 @@ constexpr size_t mergeLimit = 4096;
 vec3 safeNormalize(const vec3& v, const vec3& otherwise) {
     const float length = glm::length(v);
     return length > 1e-20f && std::isfinite(length) ? v / length : otherwise;
-}
-
-vec3 transformedPoint(const mat4& matrix, const vec3& p) {
-    return vec3(matrix * vec4(p, 1.0f));
 }
 
 /// Transforms normals and tangents.
@@ -180,7 +177,7 @@ class GeometryPacker {
         const size_t first = size_t{3} * (record.primitive & ~layout::BVH_TRIANGLE_ALPHA);
         Corners corners;
         for (size_t i = 0; i < 3; ++i)
-            corners[i] = transformedPoint(toSpace, mesh->positions[mesh->indices[first + i]]);
+            corners[i] = transformPoint(toSpace, mesh->positions[mesh->indices[first + i]]);
         return corners;
     }
 

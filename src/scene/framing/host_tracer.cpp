@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/device/mip_levels.h"
+#include "scene/model/transform.h"
 
 namespace limpid::scene {
 namespace {
@@ -29,7 +30,7 @@ std::vector<HostTriangle> worldTriangles(const Scene& scene) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[static_cast<size_t>(instance.mesh)];
         const auto at = [&](size_t index) {
-            return vec3(instance.transform * vec4(mesh.positions[mesh.indices[index]], 1.0f));
+            return transformPoint(instance.transform, mesh.positions[mesh.indices[index]]);
         };
         for (size_t t = 0; t < mesh.triangleCount(); ++t) {
             const vec3 v0 = at(3 * t);

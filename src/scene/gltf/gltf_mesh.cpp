@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scene/gltf/document/gltf_access.h"
+#include "scene/model/transform.h"
 #include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene::gltf {
@@ -194,7 +195,7 @@ int MeshLibrary::flatten(const Object& node, int mesh, const mat4& transform) {
     flat.normals.clear();
     flat.tangents.clear();
     flat.deformation.reset();
-    for (vec3& position : flat.positions) position = vec3(transform * vec4(position, 1.0f));
+    for (vec3& position : flat.positions) position = transformPoint(transform, position);
     requireFinitePositions(node, flat);
     scene_.meshes.push_back(std::move(flat));
     return static_cast<int>(scene_.meshes.size() - 1);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/model/transform.h"
 #include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene {
@@ -121,7 +122,7 @@ bool staysInRange(const vec3& lower, const vec3& upper, const mat4& toSpace) {
     for (int corner = 0; corner < 8; ++corner) {
         const vec3 point(corner & 1 ? upper.x : lower.x, corner & 2 ? upper.y : lower.y,
                          corner & 4 ? upper.z : lower.z);
-        const vec3 size = glm::abs(vec3(toSpace * vec4(point, 1.0f)));
+        const vec3 size = glm::abs(transformPoint(toSpace, point));
         if (!(size.x < coordinateLimit && size.y < coordinateLimit && size.z < coordinateLimit)) return false;
     }
     return true;

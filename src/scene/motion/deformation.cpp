@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/model/transform.h"
+
 namespace limpid::scene {
 namespace {
 
@@ -38,7 +40,7 @@ DeformedVertices deform(const Deformation& deformation, std::span<const float> m
         mat4 blended(0.0f);
         for (int c = 0; c < 4; ++c)
             blended += joints[deformation.joints[i][static_cast<size_t>(c)]] * weight[c];
-        out.positions[i] = vec3(blended * vec4(out.positions[i], 1.0f));
+        out.positions[i] = transformPoint(blended, out.positions[i]);
         if (!out.normals.empty()) out.normals[i] = cofactors(mat3(blended)) * out.normals[i];
         if (!out.tangents.empty()) {
             out.tangents[i] = vec4(mat3(blended) * vec3(out.tangents[i]), out.tangents[i].w);

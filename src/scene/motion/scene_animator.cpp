@@ -11,6 +11,7 @@
 #include "scene/device/trees/top_tree.h"
 #include "scene/load/validate.h"
 #include "scene/model/camera.h"
+#include "scene/model/transform.h"
 #include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene {
@@ -308,7 +309,7 @@ void SceneAnimator::addTriangleLights(const Moment& now, SceneFrame& frame, Ligh
             const std::array<vec3, 3> own{positions[index[0]], positions[index[mirrored ? 2 : 1]],
                                           positions[index[mirrored ? 1 : 2]]};
             std::array<vec3, 3> corners{};
-            for (size_t k = 0; k < 3; ++k) corners[k] = vec3(toWorld * vec4(own[k], 1.0f));
+            for (size_t k = 0; k < 3; ++k) corners[k] = transformPoint(toWorld, own[k]);
             std::array<uvec4, layout::LIGHT_TEXELS> record{};
             std::copy_n(lightRecords_[moving].begin() + static_cast<std::ptrdiff_t>(i * record.size()),
                         record.size(), record.begin());

@@ -13,6 +13,7 @@
 #include "scene/device/mip_levels.h"
 #include "scene/device/pack.h"
 #include "scene/device/tables/weight_pyramid.h"
+#include "scene/model/transform.h"
 
 namespace limpid::scene {
 namespace {
@@ -225,7 +226,7 @@ class LightPacker {
         std::array<vec3, 3> own{}, v{};
         for (size_t k = 0; k < 3; ++k) {
             own[k] = mesh.positions[index[k]];
-            v[k] = vec3(instance.transform * vec4(own[k], 1.0f));
+            v[k] = transformPoint(instance.transform, own[k]);
         }
         const uvec4& record = data_.instances[instanceIndex * layout::INSTANCE_TEXELS + 3];
         // Rays meet triangles of the static tree in the world.

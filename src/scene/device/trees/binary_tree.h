@@ -11,8 +11,8 @@
 
 #include "base/progress.h"
 #include "base/raw_vector.h"
-#include "scene/device/trees/aabb.h"
 #include "scene/device/trees/clip.h"
+#include "scene/model/aabb.h"
 
 namespace limpid::scene {
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "scene/device/trees/aabb.h"
+#include "scene/model/aabb.h"
 
 namespace limpid::scene {
 

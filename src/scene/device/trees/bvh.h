@@ -13,8 +13,8 @@
 #include "base/math.h"
 #include "base/progress.h"
 #include "base/raw_vector.h"
-#include "scene/device/trees/aabb.h"
 #include "scene/device/trees/binary_tree.h"
+#include "scene/model/aabb.h"
 
 namespace limpid::scene {
 

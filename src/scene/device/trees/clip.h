@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "scene/device/trees/aabb.h"
+#include "scene/model/aabb.h"
 
 namespace limpid::scene {
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scene/device/pack.h"
+#include "scene/model/transform.h"
 
 namespace limpid::scene {
 
@@ -40,11 +41,7 @@ TopTree buildTopTree(std::span<const TopLeaf> leaves, uint32_t firstNode, uint32
 Aabb transformed(const Aabb& box, const mat4& m) {
     Aabb result;
     if (box.empty()) return result;
-    for (int corner = 0; corner < 8; ++corner) {
-        const vec3 p(corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                     corner & 4 ? box.upper.z : box.lower.z);
-        result.grow(vec3(m * vec4(p, 1.0f)));
-    }
+    for (int i = 0; i < 8; ++i) result.grow(transformPoint(m, box.corner(i)));
     // Rays are intersected in the instance's own space; the rounding there must not exceed the box here.
     const vec3 margin = 1e-5f * (glm::abs(result.lower) + glm::abs(result.upper) + result.size());
     result.lower -= margin;

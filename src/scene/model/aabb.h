@@ -22,6 +22,10 @@ struct Aabb {
     bool empty() const { return lower.x > upper.x; }
     vec3 center() const { return 0.5f * lower + 0.5f * upper; }
     vec3 size() const { return upper - lower; }
+    /// 0 to 7: its bits choose the upper end along x, y and z.
+    vec3 corner(int i) const {
+        return {i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y, i & 4 ? upper.z : lower.z};
+    }
     /// Half of the surface; 0 if empty.
     float halfArea() const {
         if (empty()) return 0.0f;

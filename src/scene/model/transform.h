@@ -1,0 +1,13 @@
+// Points in other spaces.
+#pragma once
+
+#include "base/math.h"
+
+namespace limpid::scene {
+
+/// `matrix` is affine: its last row is 0, 0, 0, 1.
+inline vec3 transformPoint(const mat4& matrix, const vec3& point) {
+    return vec3(matrix * vec4(point, 1.0f));
+}
+
+}  // namespace limpid::scene
