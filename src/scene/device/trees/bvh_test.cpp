@@ -268,23 +268,31 @@ TEST(TriangleBvh, ALargeTriangleBesideManySmallOnesIsALeafAtTheTop) {
     }
 }
 
-TEST(TriangleBvh, BuiltInPartsCanBeGivenUp) {
-    const std::vector<Corners> triangles = mixedTriangles(10000);
+/// Gives build(progress) up before it begins, and whenever `step` percent more are done.
+template <typename Build>
+void expectCanBeGivenUp(int step, const Build& build) {
     const Progress givenUp = Progress::watched();
     givenUp.cancel();
-    EXPECT_THROW(buildBvhInParts(referencesOf(triangles), 4, 64, givenUp), Cancelled);
-    for (int percent = 0; percent < 100; percent += 20) {
+    EXPECT_THROW(build(givenUp), Cancelled);
+    for (int percent = 0; percent < 100; percent += step) {
         const Progress progress = Progress::watched();
         std::jthread canceller([&](const std::stop_token& isBuilt) {
             while (100.0 * progress.done() < percent && !isBuilt.stop_requested()) std::this_thread::yield();
             progress.cancel();
         });
         try {
-            EXPECT_EQ(buildBvhInParts(referencesOf(triangles), 4, 64, progress).order.size(), 10000u);
+            build(progress);
         } catch (const Cancelled&) {
         }
         canceller.request_stop();
     }
+}
+
+TEST(TriangleBvh, BuiltInPartsCanBeGivenUp) {
+    const std::vector<Corners> triangles = mixedTriangles(10000);
+    expectCanBeGivenUp(20, [&](const Progress& progress) {
+        EXPECT_EQ(buildBvhInParts(referencesOf(triangles), 4, 64, progress).order.size(), 10000u);
+    });
 }
 
 TEST(RunAll, CallsAllAndThrowsTheFirstFault) {
@@ -327,22 +335,9 @@ TEST(RunBoth, FinishesOneWhenTheOtherThrows) {
 TEST(TriangleBvh, CanBeGivenUp) {
     const std::vector<Corners> triangles = mixedTriangles(10000);
     const std::vector<bool> divisible(triangles.size(), true);
-    const Progress givenUp = Progress::watched();
-    givenUp.cancel();
-    EXPECT_THROW(buildTriangleBvh(triangles, divisible, givenUp), Cancelled);
-    for (int percent = 0; percent < 100; percent += 7) {
-        const Progress progress = Progress::watched();
-        std::jthread canceller([&](const std::stop_token& isBuilt) {
-            while (100.0 * progress.done() < percent && !isBuilt.stop_requested()) std::this_thread::yield();
-            progress.cancel();
-        });
-        try {
-            const Bvh bvh = buildTriangleBvh(triangles, divisible, progress);
-            EXPECT_GE(bvh.order.size(), triangles.size());
-        } catch (const Cancelled&) {
-        }
-        canceller.request_stop();
-    }
+    expectCanBeGivenUp(7, [&](const Progress& progress) {
+        EXPECT_GE(buildTriangleBvh(triangles, divisible, progress).order.size(), triangles.size());
+    });
 }
 
 TEST(PartitionInParallel, IsAPartition) {
