@@ -434,6 +434,36 @@ TEST_F(GpuTest, NewPipelinesAreAnnouncedOnce) {
     EXPECT_EQ(announced, 2);
 }
 
+TEST_F(GpuTest, PipelinesThatAreNotUsedForLongAreDestroyed) {
+    Device few({.select = device().info().name, .mostPipelines = 4});
+    FrameGraph graph;
+    const auto run = [&](uint32_t width, int dispatches) {
+        graph.beginFrame();
+        const ImageHandle image = graph.transient("size", Format::RG32Uint, {3, 2});
+        for (int i = 0; i < dispatches; ++i) {
+            graph.dispatch({.pass = "size",
+                            .shader = shaders::test_group_size_comp,
+                            .bindings = {{"result", image}},
+                            .constants = {{"groupWidth", width}, {"groupHeight", 4}},
+                            .extent = {3, 2}});
+        }
+        graph.execute(few);
+        EXPECT_EQ(graph.downloadUint(few, image).at(0), width);
+    };
+    for (uint32_t width = 1; width <= 6; ++width) run(width, 1);
+    EXPECT_EQ(few.keptPipelineCount(), 6u) << "recently used";
+    for (int frame = 0; frame < 16; ++frame) run(6, 64);
+    EXPECT_EQ(few.keptPipelineCount(), 6u) << "only new ones need room";
+    run(7, 1);
+    EXPECT_EQ(few.keptPipelineCount(), 4u);
+    EXPECT_EQ(few.pipelineCount(), 7u);
+    run(6, 1);
+    EXPECT_EQ(few.pipelineCount(), 7u) << "what each frame used exists";
+    run(1, 1);
+    EXPECT_EQ(few.pipelineCount(), 8u) << "made again";
+    EXPECT_EQ(few.validationMessages(), 0u);
+}
+
 TEST_F(GpuTest, AFailedFrameDoesNotHarmTheNext) {
     FrameGraph graph;
     graph.beginFrame();

@@ -24,10 +24,10 @@ std::vector<DeviceInfo> enumerateDevices() {
 }
 
 Device::Device(const DeviceOptions& options)
-    : impl_(std::make_unique<Impl>(std::make_shared<const Context>(options), options.specialise)) {}
+    : impl_(std::make_unique<Impl>(std::make_shared<const Context>(options), options)) {}
 
 Device::Device(const AdoptedDevice& adopted)
-    : impl_(std::make_unique<Impl>(std::make_shared<const Context>(adopted), Specialise{})) {}
+    : impl_(std::make_unique<Impl>(std::make_shared<const Context>(adopted), DeviceOptions{})) {}
 
 Device::~Device() {
     // For an adopted device this is the caller's job.
@@ -118,7 +118,11 @@ void Device::loadPipelineCache(std::span<const std::byte> data) {
 }
 
 size_t Device::pipelineCount() const {
-    return impl_->pipelines->size();
+    return impl_->pipelines->made();
+}
+
+size_t Device::keptPipelineCount() const {
+    return impl_->pipelines->kept();
 }
 
 void Device::onNewPipelines(std::function<void()> listener) {

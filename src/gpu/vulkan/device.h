@@ -87,6 +87,9 @@ struct DeviceOptions {
     /// Sets specialisation constants before a CPU's driver sees a shader (gpu/specialise/specialise.h).
     /// Called from several threads at once. None: the driver does it, as on GPUs.
     Specialise specialise;
+    /// If there are more pipelines, those are destroyed that the last 1,024 dispatches have not used. On
+    /// lavapipe, each takes about 2 MB.
+    size_t mostPipelines = 128;
 };
 
 struct AdoptedDevice;  ///< in gpu/vulkan/adopted_device.h
@@ -138,6 +141,8 @@ class Device {
     void loadPipelineCache(std::span<const std::byte> data);
     /// Number of pipelines created so far.
     size_t pipelineCount() const;
+    /// Number of those that exist: see DeviceOptions::mostPipelines.
+    size_t keptPipelineCount() const;
     /// Calls `listener` whenever a frame needs pipelines that do not exist yet, in the thread that executes
     /// or prepares the frame, before they are created. That can take seconds if the driver has to compile
     /// shaders; lavapipe compiles them later, while it computes the frame. Not thread-safe; call it between

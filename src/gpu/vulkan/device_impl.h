@@ -11,9 +11,9 @@
 namespace limpid::gpu {
 
 struct Device::Impl {
-    Impl(std::shared_ptr<const Context> on, Specialise specialise)
+    Impl(std::shared_ptr<const Context> on, const DeviceOptions& options)
         : context(std::move(on)),
-          pipelines(std::make_shared<PipelineCache>(context, std::move(specialise))) {}
+          pipelines(std::make_shared<PipelineCache>(context, options.specialise, options.mostPipelines)) {}
 
     /// Created at the first copy: an adopted device may never need it.
     Transfer& transfer() {

@@ -197,6 +197,7 @@ void FrameExecutor::bindPasses(const RecordedFrame& frame, FrameSlot& slot) {
         if (!dispatch.shader) continue;
         checkGroups(frame, i);
         bound_[i].pipeline = pipelines_->get(dispatch);
+        slot.keep(bound_[i].pipeline.made);
         bound_[i].set = writeDescriptors(frame, i, bound_[i].pipeline.setLayout, slot);
     }
 }
@@ -398,11 +399,11 @@ void FrameExecutor::runOnHost(const RecordedFrame& frame, size_t index, FrameSlo
 void FrameExecutor::recordDispatch(const RecordedFrame& frame, size_t index, FrameSlot& slot) {
     const VkCommandBuffer commands = slot.commands();
     const auto& [pipeline, set] = bound_[index];
-    if (slices_ && !pipeline.table) return recordSlices(frame, index, pipeline, set, slot);
+    if (slices_ && !pipeline.table()) return recordSlices(frame, index, pipeline, set, slot);
     beginLabel(commands, frame.passes[index].name);
     bind(commands, pipeline, set);
     const auto& groups = frame.dispatches[index].groups;
-    if (const ShaderTable* const table = pipeline.table) {
+    if (const ShaderTable* const table = pipeline.table()) {
         const VkStridedDeviceAddressRegionKHR callable{};
         context_->vk().CmdTraceRaysKHR(commands, &table->rayGeneration, &table->miss, &table->hit, &callable,
                                        groups[0], groups[1], groups[2]);
@@ -415,8 +416,8 @@ void FrameExecutor::recordDispatch(const RecordedFrame& frame, size_t index, Fra
 void FrameExecutor::bind(VkCommandBuffer commands, const PipelineCache::Pipeline& pipeline,
                          VkDescriptorSet set) const {
     const VkPipelineBindPoint point =
-        pipeline.table ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
-    context_->vk().CmdBindPipeline(commands, point, pipeline.pipeline);
+        pipeline.table() ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
+    context_->vk().CmdBindPipeline(commands, point, pipeline.handle());
     context_->vk().CmdBindDescriptorSets(commands, point, pipeline.layout, 0, 1, &set, 0, nullptr);
 }
 

@@ -35,6 +35,7 @@ void FrameSlot::wait() {
 void FrameSlot::makeRoom(const RecordedFrame& frame) {
     buffers_.clear();
     structures_.clear();
+    used_.clear();
     passNames_.clear();
     reserveDescriptors(frame);
     reserveParams(frame);

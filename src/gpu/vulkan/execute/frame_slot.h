@@ -20,6 +20,8 @@ class FrameSlot {
     std::vector<PassTime> beginForeign(const RecordedFrame& frame, VkCommandBuffer commands);
     void endForeign(const RecordedFrame& frame);
     void wait();
+    /// Keeps it alive until the slot's next frame begins.
+    void keep(std::shared_ptr<const void> used) { used_.push_back(std::move(used)); }
     /// Submits the commands recorded so far and waits for them, in the middle of a frame.
     void flush();
 
@@ -72,6 +74,7 @@ class FrameSlot {
     /// Resources that the frame uses, kept alive until it is finished.
     std::vector<std::shared_ptr<const BufferResource>> buffers_;
     std::vector<std::shared_ptr<const StructuresResource>> structures_;
+    std::vector<std::shared_ptr<const void>> used_;
 };
 
 }  // namespace limpid::gpu

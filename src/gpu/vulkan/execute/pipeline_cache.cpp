@@ -138,9 +138,11 @@ VkShaderStageFlagBits stageFlag(ShaderStage stage) {
     return VK_SHADER_STAGE_ALL;
 }
 
-PipelineCache::PipelineCache(std::shared_ptr<const Context> context, Specialise specialise)
+PipelineCache::PipelineCache(std::shared_ptr<const Context> context, Specialise specialise,
+                             size_t mostPipelines)
     : context_(std::move(context)),
       specialise_(std::move(specialise)),
+      mostPipelines_(mostPipelines),
       dynamicParams_(wantsDynamicParams(*context_)),
       driverCache_(makeDriverCache({})) {}
 
@@ -176,7 +178,7 @@ std::vector<std::byte> PipelineCache::data() const {
 
 void PipelineCache::load(std::span<const std::byte> data) {
     const std::lock_guard lock(mutex_);
-    if (!pipelines_.empty()) throw Error("the pipeline cache cannot be loaded: pipelines have been made");
+    if (made_ > 0) throw Error("the pipeline cache cannot be loaded: pipelines have been made");
     uint64_t sum = 0;
     if (data.size() <= sizeof(sum)) return;
     std::memcpy(&sum, data.data(), sizeof(sum));
@@ -184,7 +186,12 @@ void PipelineCache::load(std::span<const std::byte> data) {
     if (checksum(content) == sum) driverCache_ = makeDriverCache(content);
 }
 
-size_t PipelineCache::size() const {
+size_t PipelineCache::made() const {
+    const std::lock_guard lock(mutex_);
+    return made_;
+}
+
+size_t PipelineCache::kept() const {
     const std::lock_guard lock(mutex_);
     return pipelines_.size();
 }
@@ -194,10 +201,28 @@ PipelineCache::Pipeline PipelineCache::get(const RecordedDispatch& dispatch) {
     const Layouts& layouts = layoutsOf(*dispatch.shader);
     const Key key{dispatch.shader->hash, dispatch.constants};
     auto found = pipelines_.find(key);
-    if (found == pipelines_.end()) found = pipelines_.emplace(key, makePipeline(dispatch, layouts)).first;
-    const Made& made = found->second;
-    return {made.pipeline.get(), layouts.pipeline.get(), layouts.set.get(),
-            made.table ? &*made.table : nullptr};
+    if (found == pipelines_.end()) found = keep(key, makePipeline(dispatch, layouts));
+    found->second.lastUse = ++uses_;
+    return {found->second.made, layouts.pipeline.get(), layouts.set.get()};
+}
+
+PipelineCache::Entries::iterator PipelineCache::keep(const Key& key, Made made) {
+    destroyUnused();
+    const auto [entry, isNew] =
+        pipelines_.try_emplace(key, Entry{std::make_shared<const Made>(std::move(made)), uses_});
+    made_ += isNew;
+    return entry;
+}
+
+/// The oldest first. A frame has fewer dispatches than `recent`: what each frame uses is never destroyed.
+void PipelineCache::destroyUnused() {
+    constexpr uint64_t recent = 1024;
+    const auto earlier = [](const auto& a, const auto& b) { return a.second.lastUse < b.second.lastUse; };
+    while (pipelines_.size() >= std::max<size_t>(mostPipelines_, 1)) {
+        const auto oldest = std::ranges::min_element(pipelines_, earlier);
+        if (oldest->second.lastUse + recent > uses_) return;
+        pipelines_.erase(oldest);
+    }
 }
 
 void PipelineCache::prepare(std::span<const RecordedDispatch> dispatches) {
@@ -236,7 +261,7 @@ void PipelineCache::makeAll(const std::vector<Job>& jobs) {
         const RecordedDispatch& dispatch = *jobs[i].dispatch;
         Made made = makePipeline(dispatch, *jobs[i].layouts);
         const std::lock_guard lock(mutex_);
-        pipelines_.emplace(Key{dispatch.shader->hash, dispatch.constants}, std::move(made));
+        keep({dispatch.shader->hash, dispatch.constants}, std::move(made));
     });
 }
 

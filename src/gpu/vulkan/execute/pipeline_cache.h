@@ -1,5 +1,6 @@
 // The compute and ray-tracing pipelines of a device, shared by all its graphs. Created by prepare(), or at
-// the first dispatch that needs them.
+// the first dispatch that needs them. Scenes and settings are constants of pipelines, so a program that runs
+// for long would have ever more: those that were not used for long are destroyed.
 #pragma once
 
 #include <functional>
@@ -15,14 +16,20 @@ namespace limpid::gpu {
 
 class PipelineCache {
   public:
-    /// `specialise`: of DeviceOptions.
-    PipelineCache(std::shared_ptr<const Context> context, Specialise specialise);
+    /// `specialise` and `mostPipelines`: of DeviceOptions.
+    PipelineCache(std::shared_ptr<const Context> context, Specialise specialise, size_t mostPipelines);
 
+    struct Made {
+        UniquePipeline pipeline;
+        std::optional<ShaderTable> table;  ///< for ray-tracing pipelines
+    };
     struct Pipeline {
-        VkPipeline pipeline = VK_NULL_HANDLE;
+        std::shared_ptr<const Made> made;  ///< to be kept until the device has used it
         VkPipelineLayout layout = VK_NULL_HANDLE;
         VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-        const ShaderTable* table = nullptr;  ///< for ray-tracing pipelines
+
+        VkPipeline handle() const { return made->pipeline.get(); }
+        const ShaderTable* table() const { return made->table ? &*made->table : nullptr; }
     };
 
     /// Throws Error naming the shader if it exceeds a limit of the device. Thread-safe.
@@ -41,7 +48,10 @@ class PipelineCache {
     /// Initialises the driver's cache with earlier data(); damaged data is ignored. Throws Error if pipelines
     /// have been created.
     void load(std::span<const std::byte> data);
-    size_t size() const;
+    /// The number of pipelines made so far.
+    size_t made() const;
+    /// The number of those that were not destroyed.
+    size_t kept() const;
 
   private:
     struct Layouts {
@@ -49,11 +59,12 @@ class PipelineCache {
         UniquePipelineLayout pipeline;
         std::vector<UniqueShaderModule> modules;  ///< one per stage
     };
-    struct Made {
-        UniquePipeline pipeline;
-        std::optional<ShaderTable> table;
-    };
     using Key = std::pair<uint64_t, SpecialisationConstants>;  ///< Shader::hash and the constants
+    struct Entry {
+        std::shared_ptr<const Made> made;
+        uint64_t lastUse = 0;  ///< the value of uses_ then
+    };
+    using Entries = std::map<Key, Entry>;
 
     struct Job {
         const RecordedDispatch* dispatch;
@@ -61,8 +72,10 @@ class PipelineCache {
     };
     std::vector<Job> missing(std::span<const RecordedDispatch> dispatches);
     void makeAll(const std::vector<Job>& jobs);
-    /// `mutex_` must be held.
+    /// `mutex_` must be held for these three.
     const Layouts& layoutsOf(const Shader& shader);
+    Entries::iterator keep(const Key& key, Made made);
+    void destroyUnused();
     UniqueDriverCache makeDriverCache(std::span<const std::byte> data) const;
     Layouts makeLayouts(const Shader& shader) const;
     UniqueSetLayout makeSetLayout(const Shader& shader) const;
@@ -74,12 +87,15 @@ class PipelineCache {
 
     std::shared_ptr<const Context> context_;
     Specialise specialise_;
+    size_t mostPipelines_;
     bool dynamicParams_;  ///< of dynamic_params.h
     UniqueDriverCache driverCache_;
     std::function<void()> listener_;
     mutable std::mutex mutex_;             ///< protects the members below; their elements do not move
     std::map<uint64_t, Layouts> layouts_;  ///< key: Shader::hash
-    std::map<Key, Made> pipelines_;
+    Entries pipelines_;
+    uint64_t uses_ = 0;  ///< calls of get()
+    size_t made_ = 0;
 };
 
 /// The Vulkan value of a binding kind, and of a stage.
