@@ -30,6 +30,16 @@ class WeightsTest(unittest.TestCase):
         frame.references = tuple(torch.rand_like(image) for image in frame.references)
         self.assertTrue(torch.equal(loss.weights_of(frame), before))
 
+    def test_relative_differences_are_those_of_relmse(self):
+        grey = torch.full((1, 3, 8, 8), 2.0)
+        frame = frame_with((grey, grey), grey)
+        self.assertTrue(torch.equal(loss.weights_of(frame, 0.0), loss.weights_of(frame)))
+        # The square of a sum of errors is that of sRGB's plus relMSE's.
+        more = loss.weights_of(frame, 0.5) ** 2 - loss.weights_of(frame) ** 2
+        self.assertTrue(torch.allclose(more, torch.full_like(more, 0.25 / (2.0**2 + 0.01)), rtol=1e-4))
+        both = loss.Judge(frame, 0.5).loss(grey + 0.01).item() / loss.Judge(frame).loss(grey + 0.01).item()
+        self.assertAlmostEqual(both, (loss.weights_of(frame, 0.5) / loss.weights_of(frame)).mean().item() ** 2, places=3)
+
 
 class ErrorTest(unittest.TestCase):
     """References have skewed noise that is as large as the error, as few samples of a path tracer have."""

@@ -12,7 +12,7 @@ import torch
 from torch.nn import functional
 
 from .. import checkpoint, pictures
-from . import clips, features, loss, network, weights
+from . import clips, loss, network, weights
 
 #: What is measured, and how. The first three are unbiased however noisy the references are (loss.py); the others have
 #: the references' noise in them.
@@ -28,14 +28,13 @@ ERRORS = {
 def errors_of(picture, frame):
     """Returns the errors of a picture of a clips.Frame, by name."""
     scale = loss.weights_of(frame)
-    brightness = loss.blurred(features.luminance(frame.svgf), 2) ** 2 + 0.01
     mean = 0.5 * (frame.references[0] + frame.references[1])
     plain = loss.product(picture, frame.references, torch.ones_like(scale))
     blocks = [functional.avg_pool2d((picture - reference) * scale, 8) for reference in frame.references]
     numbers = {
         # Limits: a firefly of a reference would otherwise decide. They are far above what pictures' errors are.
         "square": (plain * scale * scale).clamp(-1, 1),
-        "relative": (plain.mean(1, keepdim=True) / brightness).clamp(-4, 4),
+        "relative": (plain.mean(1, keepdim=True) / loss.squared_brightness(frame)).clamp(-4, 4),
         "blocks": blocks[0] * blocks[1],
         "absolute": (loss.srgb(picture) - loss.srgb(mean)).abs(),
         "blurred": (loss.blurred(picture - mean, 2) * scale).abs(),

@@ -19,7 +19,7 @@ For all, the weights must not depend on the references' noise. They are computed
 import torch
 from torch.nn import functional
 
-from . import warp
+from . import features, warp
 
 #: Differences of about a third of the range from black to white, and larger ones, count by their absolute value:
 #: fireflies of the references would otherwise decide the gradient.
@@ -56,10 +56,17 @@ def blurred(image, radius=1):
     return functional.avg_pool2d(functional.pad(image, (radius,) * 4, mode="replicate"), 2 * radius + 1, 1)
 
 
-def weights_of(frame):
-    """Returns the weights of differences from a clips.Frame's references. SVGF's picture is blurred, because the
-    weights of its own errors would otherwise favour one sign."""
-    return slope(blurred(frame.svgf).clamp(min=0))
+def squared_brightness(frame):
+    """Returns what squared differences are divided by to be relative, as in relMSE (docs/metrics.md)."""
+    return blurred(features.luminance(frame.svgf), 2) ** 2 + 0.01
+
+
+def weights_of(frame, relative=0.0):
+    """Returns the weights of differences from a clips.Frame's references. `relative`: weight of relative differences
+    beside those of sRGB. SVGF's picture is blurred, because the weights of its own errors would otherwise favour one
+    sign."""
+    weights = slope(blurred(frame.svgf).clamp(min=0))
+    return (weights**2 + relative**2 / squared_brightness(frame)).sqrt() if relative else weights
 
 
 def product(picture, references, weights):
@@ -72,9 +79,9 @@ class Judge:
     """Compares pictures of a batch with its references. All frames count alike, whether SVGF's error in them is large
     or small: differences of means over 5x5 pixels, where little of the references' noise is left, tell how large."""
 
-    def __init__(self, frame):
+    def __init__(self, frame, relative=0.0):
         self.references, self.motion, self.frames = frame.references, frame.motion, frame.frames
-        self.weights = weights_of(frame)
+        self.weights = weights_of(frame, relative)
         self.mean = 0.5 * (self.references[0] + self.references[1])
         off = blurred((frame.svgf - self.mean) * self.weights, 2)
         self.scale = 1 / ((off * off).mean((1, 2, 3), keepdim=True) + LEAST_ERROR)

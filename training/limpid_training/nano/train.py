@@ -65,6 +65,8 @@ def parse(arguments=None):
     parser.add_argument("--rate", type=float, default=2e-3, help="the largest learning rate")
     parser.add_argument("--last-rate", type=float, default=2e-4,
                         help="the learning rate at the end; it falls along half a cosine")
+    parser.add_argument("--relative", type=float, default=0.0,
+                        help="weight of relative differences of light, as in relMSE, beside those of sRGB; 0 to 1")
     parser.add_argument("--network", choices=list(network.SHAPES), default="nano", help="whose shape the network has")
     for name, about in (("widths", "channels"), ("depths", "convolutions of 3x3 pixels on the way down"),
                         ("kernels", "width of the kernels, pixels; odd")):
@@ -200,7 +202,7 @@ class Trainer:
         """Returns the loss of a batch, and adds what report() tells of it."""
         filtered = network.denoise(self.net, frame, self.predictor)
         picture, own = frame.compose(filtered.light), frame.compose(filtered.own)
-        judge = loss.Judge(frame)
+        judge = loss.Judge(frame, self.options.relative)
         result = judge.loss(picture) + OWN_WEIGHT * judge.loss(own)
         if self.paired:
             result = result + CHANGE_WEIGHT * judge.change(picture)
