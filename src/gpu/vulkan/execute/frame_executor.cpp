@@ -467,7 +467,7 @@ void FrameExecutor::setInterruption(std::function<bool()> interrupted) {
 VkDescriptorSet FrameExecutor::writeDescriptors(const RecordedFrame& frame, size_t index,
                                                 VkDescriptorSetLayout layout, FrameSlot& slot) {
     const RecordedDispatch& dispatch = frame.dispatches[index];
-    const VkDescriptorSet set = slot.allocateSet(layout, frame.passes[index].name);
+    const VkDescriptorSet set = slot.allocateSet(layout);
     std::vector<VkWriteDescriptorSet> writes;
     std::vector<VkDescriptorImageInfo> images;
     std::vector<VkDescriptorBufferInfo> buffers;

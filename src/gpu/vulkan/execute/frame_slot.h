@@ -26,7 +26,7 @@ class FrameSlot {
     void flush();
 
     VkCommandBuffer commands() const { return commands_; }
-    VkDescriptorSet allocateSet(VkDescriptorSetLayout layout, const std::string& name);
+    VkDescriptorSet allocateSet(VkDescriptorSetLayout layout);
     /// Copies a parameter struct into the uniform ring buffer.
     VkDescriptorBufferInfo pushParams(std::span<const std::byte> params);
     /// Copies uploads into a staging buffer, from its beginning. `copies` are those that are not borrowed.
