@@ -26,6 +26,9 @@ class _Device:
 
 _devices = SharedDevices(_Device)
 
+#: Options of _Renderer that render() does not take.
+OF_SEQUENCES = ("fps", "frames", "animation", "camera_path", "shutter", "shutter_position")
+
 
 def compare(test, reference, *, exposure="auto"):
     """Measures the difference between a picture and its reference.
@@ -91,6 +94,9 @@ def render(scene, width, height, spp=64, **options):
 
     Denoiser.denoise() accepts these arrays as they are, with motion_depth="distance".
     """
+    for name in OF_SEQUENCES:
+        if name in options:
+            raise TypeError(f"render() makes a still: {name} is an option of render_sequence()")
     return _Renderer(scene, width, height, spp, default_jitter="pixel", **options).render(0)
 
 

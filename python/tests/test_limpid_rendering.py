@@ -319,6 +319,11 @@ class RenderTest(unittest.TestCase):
                 frame(**{"shutter": 1, **options})
             self.assertEqual(caught.exception.code, "invalid_argument")
 
+    def test_a_still_takes_no_options_of_sequences(self):
+        for options in {"shutter": 1}, {"animation": "all"}, {"fps": 24}:
+            with self.subTest(options), self.assertRaisesRegex(TypeError, "render_sequence"):
+                limpid.render("builtin:cornell", 8, 8, 1, device=device(), **options)
+
     def test_names_of_scenes_need_not_be_utf_8(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = os.path.join(os.fsencode(folder), b"\xff.obj")

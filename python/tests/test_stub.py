@@ -59,7 +59,7 @@ class StubTest(unittest.TestCase):
         real = {p[0] for p in actual(_rendering._Renderer.__init__)} - {"default_jitter"}
         self.assertEqual({p[0] for p in described(self.stub["render_sequence"])}, real | {"first"})
         self.assertEqual({p[0] for p in described(self.stub["render"])},
-                         real - {"fps", "frames", "animation", "camera_path", "shutter", "shutter_position"})
+                         real - set(_rendering.OF_SEQUENCES))
 
     def test_everything_public_has_a_docstring(self):
         for name in limpid.__all__:
