@@ -288,7 +288,7 @@ TEST_P(AmbientOcclusionTest, EveryParameterChangesTheResult) {
     EXPECT_NE(open(other, {}), before);
 }
 
-INSTANTIATE_TEST_SUITE_P(Tracers, AmbientOcclusionTest, testing::ValuesIn(allTracers), nameOfTracer);
+INSTANTIATE_TEST_SUITE_P(Tracers, AmbientOcclusionTest, testing::ValuesIn(ownTracers), nameOfTracer);
 
 }  // namespace
 }  // namespace limpid::test

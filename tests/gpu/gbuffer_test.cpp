@@ -452,7 +452,7 @@ TEST_P(GBufferTest, EveryParameterChangesTheLight) {
     EXPECT_NE(pixels(stage, look(stage, other).light), before);
 }
 
-INSTANTIATE_TEST_SUITE_P(Tracers, GBufferTest, testing::ValuesIn(allTracers), nameOfTracer);
+INSTANTIATE_TEST_SUITE_P(Tracers, GBufferTest, testing::ValuesIn(ownTracers), nameOfTracer);
 
 }  // namespace
 }  // namespace limpid::test

@@ -179,7 +179,7 @@ TEST_P(MotionBlurTest, ACutIsSharp) {
                  {0.5, Shutter::Position::End});
 }
 
-INSTANTIATE_TEST_SUITE_P(Tracers, MotionBlurTest, testing::ValuesIn(allTracers), nameOfTracer);
+INSTANTIATE_TEST_SUITE_P(Tracers, MotionBlurTest, testing::ValuesIn(ownTracers), nameOfTracer);
 
 }  // namespace
 }  // namespace limpid::test

@@ -118,5 +118,8 @@ inline const std::array<scene::TraceOptions, 2> computeTracers{
     scene::TraceOptions{scene::Tracer::Compute, true}, scene::TraceOptions{scene::Tracer::Compute, false}};
 inline const std::array<scene::TraceOptions, 3> allTracers{computeTracers[0], computeTracers[1],
                                                            scene::TraceOptions{scene::Tracer::Hardware, {}}};
+/// The device's own traversal, and the driver's: enough where the subject is not how triangles are found.
+inline const std::array<scene::TraceOptions, 2> ownTracers{scene::TraceOptions{scene::Tracer::Compute, {}},
+                                                           scene::TraceOptions{scene::Tracer::Hardware, {}}};
 
 }  // namespace limpid::test
