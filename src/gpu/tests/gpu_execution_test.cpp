@@ -435,7 +435,7 @@ TEST_F(GpuTest, NewPipelinesAreAnnouncedOnce) {
 }
 
 TEST_F(GpuTest, PipelinesThatAreNotUsedForLongAreDestroyed) {
-    Device few({.select = device().info().name, .mostPipelines = 4});
+    Device few({.select = device().info().name, .validation = validated_, .mostPipelines = 4});
     FrameGraph graph;
     const auto run = [&](uint32_t width, int dispatches) {
         graph.beginFrame();
@@ -462,6 +462,46 @@ TEST_F(GpuTest, PipelinesThatAreNotUsedForLongAreDestroyed) {
     run(1, 1);
     EXPECT_EQ(few.pipelineCount(), 8u) << "made again";
     EXPECT_EQ(few.validationMessages(), 0u);
+}
+
+TEST_F(GpuTest, PipelinesInUseAreNotDestroyed) {
+    Device one({.select = device().info().name, .validation = validated_, .mostPipelines = 1});
+    FrameGraph graph;
+    ImageHandle image;
+    const auto begin = [&] {
+        graph.beginFrame();
+        image = graph.transient("size", Format::RG32Uint, {3, 2});
+    };
+    const auto dispatch = [&](uint32_t width) {
+        graph.dispatch({.pass = "size",
+                        .shader = shaders::test_group_size_comp,
+                        .bindings = {{"result", image}},
+                        .constants = {{"groupWidth", width}, {"groupHeight", 4}},
+                        .extent = {3, 2}});
+    };
+    // The second frame takes the first pipeline's place while the device may still compute the first frame.
+    begin();
+    dispatch(1);
+    for (int i = 0; i < 1100; ++i) dispatch(2);
+    graph.execute(one);
+    begin();
+    dispatch(3);
+    graph.execute(one);
+    EXPECT_EQ(one.keptPipelineCount(), 2u);
+    EXPECT_EQ(graph.downloadUint(one, image).at(0), 3u);
+    EXPECT_EQ(one.validationMessages(), 0u);
+
+    // What a frame needs does not make room for what it lacks.
+    begin();
+    for (int i = 0; i < 1100; ++i) dispatch(3);
+    graph.execute(one);
+    const size_t made = one.pipelineCount();
+    begin();
+    dispatch(2);
+    dispatch(4);
+    graph.prepare(one);
+    graph.execute(one);
+    EXPECT_EQ(one.pipelineCount(), made + 1);
 }
 
 TEST_F(GpuTest, AFailedFrameDoesNotHarmTheNext) {

@@ -87,8 +87,8 @@ struct DeviceOptions {
     /// Sets specialisation constants before a CPU's driver sees a shader (gpu/specialise/specialise.h).
     /// Called from several threads at once. None: the driver does it, as on GPUs.
     Specialise specialise;
-    /// If there are more pipelines, those are destroyed that the last 1,024 dispatches have not used. On
-    /// lavapipe, each takes about 2 MB.
+    /// Where there are so many pipelines, a new one takes the place of the oldest that the last 1,024
+    /// dispatches have not used. On lavapipe, each takes 0.5 to 10 MB.
     size_t mostPipelines = 128;
 };
 

@@ -83,9 +83,6 @@ constexpr VkObjectType objectType(VkQueryPool) {
 constexpr VkObjectType objectType(VkDescriptorPool) {
     return VK_OBJECT_TYPE_DESCRIPTOR_POOL;
 }
-constexpr VkObjectType objectType(VkDescriptorSet) {
-    return VK_OBJECT_TYPE_DESCRIPTOR_SET;
-}
 constexpr VkObjectType objectType(VkDescriptorSetLayout) {
     return VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT;
 }

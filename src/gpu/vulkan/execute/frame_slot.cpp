@@ -193,7 +193,7 @@ VkDescriptorSet FrameSlot::allocateSet(VkDescriptorSetLayout layout) {
     info.pSetLayouts = &layout;
     VkDescriptorSet set = VK_NULL_HANDLE;
     LIMPID_VK(context_->vk().AllocateDescriptorSets(context_->device(), &info, &set));
-    // Without a name: the validation layer keeps those of sets whose pool is reset for ever.
+    // Without a name: the validation layer never forgets the names of sets whose pool is reset.
     return set;
 }
 

@@ -207,15 +207,15 @@ PipelineCache::Pipeline PipelineCache::get(const RecordedDispatch& dispatch) {
 }
 
 PipelineCache::Entries::iterator PipelineCache::keep(const Key& key, Made made) {
-    destroyUnused();
-    const auto [entry, isNew] =
-        pipelines_.try_emplace(key, Entry{std::make_shared<const Made>(std::move(made)), uses_});
-    made_ += isNew;
-    return entry;
+    // Another thread may have made the same one.
+    if (const auto found = pipelines_.find(key); found != pipelines_.end()) return found;
+    makeRoom();
+    ++made_;
+    return pipelines_.emplace(key, Entry{std::make_shared<const Made>(std::move(made)), uses_}).first;
 }
 
-/// The oldest first. A frame has fewer dispatches than `recent`: what each frame uses is never destroyed.
-void PipelineCache::destroyUnused() {
+/// Destroys the oldest first. Few frames have more dispatches than `recent`, and those can make theirs again.
+void PipelineCache::makeRoom() {
     constexpr uint64_t recent = 1024;
     const auto earlier = [](const auto& a, const auto& b) { return a.second.lastUse < b.second.lastUse; };
     while (pipelines_.size() >= std::max<size_t>(mostPipelines_, 1)) {
@@ -250,7 +250,11 @@ std::vector<PipelineCache::Job> PipelineCache::missing(std::span<const RecordedD
     for (const RecordedDispatch& dispatch : dispatches) {
         if (!dispatch.shader) continue;
         const Key key{dispatch.shader->hash, dispatch.constants};
-        if (pipelines_.contains(key) || !wanted.insert(key).second) continue;
+        if (const auto found = pipelines_.find(key); found != pipelines_.end()) {
+            found->second.lastUse = uses_;  // the new ones must not take its place
+            continue;
+        }
+        if (!wanted.insert(key).second) continue;
         jobs.push_back({&dispatch, &layoutsOf(*dispatch.shader)});
     }
     return jobs;

@@ -1,6 +1,6 @@
 // The compute and ray-tracing pipelines of a device, shared by all its graphs. Created by prepare(), or at
 // the first dispatch that needs them. Scenes and settings are constants of pipelines, so a program that runs
-// for long would have ever more: those that were not used for long are destroyed.
+// for long would have ever more: new ones take the place of those that were not used for long.
 #pragma once
 
 #include <functional>
@@ -72,10 +72,10 @@ class PipelineCache {
     };
     std::vector<Job> missing(std::span<const RecordedDispatch> dispatches);
     void makeAll(const std::vector<Job>& jobs);
-    /// `mutex_` must be held for these three.
+    // `mutex_` must be held for these.
     const Layouts& layoutsOf(const Shader& shader);
     Entries::iterator keep(const Key& key, Made made);
-    void destroyUnused();
+    void makeRoom();
     UniqueDriverCache makeDriverCache(std::span<const std::byte> data) const;
     Layouts makeLayouts(const Shader& shader) const;
     UniqueSetLayout makeSetLayout(const Shader& shader) const;
@@ -91,7 +91,7 @@ class PipelineCache {
     bool dynamicParams_;  ///< of dynamic_params.h
     UniqueDriverCache driverCache_;
     std::function<void()> listener_;
-    mutable std::mutex mutex_;             ///< protects the members below; their elements do not move
+    mutable std::mutex mutex_;             ///< protects the members below; layouts stay where they are
     std::map<uint64_t, Layouts> layouts_;  ///< key: Shader::hash
     Entries pipelines_;
     uint64_t uses_ = 0;  ///< calls of get()
