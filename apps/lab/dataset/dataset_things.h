@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "scene/device/trees/bvh.h"
+#include "scene/model/aabb.h"
 #include "scene/model/scene.h"
 
 namespace limpid::cli {

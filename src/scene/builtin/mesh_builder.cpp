@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scene/model/aabb.h"
+
 namespace limpid::scene {
 
 uint32_t MeshBuilder::vertex(const vec3& position, const vec3& normal) {
@@ -41,17 +43,17 @@ MeshBuilder& MeshBuilder::box(const vec3& lower, const vec3& upper, uint16_t slo
 
 MeshBuilder& MeshBuilder::box(const vec3& lower, const vec3& upper, const std::array<uint16_t, 6>& slots,
                               bool inside) {
-    const auto corner = [&](int i) {
-        return vec3(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y, i & 4 ? upper.z : lower.z);
-    };
+    const Aabb bounds{lower, upper};
     constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (size_t side = 0; side < slots.size(); ++side) {
         const auto& f = faces[side];
         if (inside) {
-            quad(corner(f[3]), corner(f[2]), corner(f[1]), corner(f[0]), slots[side]);
+            quad(bounds.corner(f[3]), bounds.corner(f[2]), bounds.corner(f[1]), bounds.corner(f[0]),
+                 slots[side]);
         } else {
-            quad(corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3]), slots[side]);
+            quad(bounds.corner(f[0]), bounds.corner(f[1]), bounds.corner(f[2]), bounds.corner(f[3]),
+                 slots[side]);
         }
     }
     return *this;

@@ -9,7 +9,8 @@
 
 #include "scene/model/scene.h"
 #include "scene/model/transform.h"
-#include "scene/prepare/mesh_repair.h"
+#include "scene/motion/animation.h"
+#include "scene/motion/deformation.h"
 
 namespace limpid::scene {
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/math.h"
+#include "scene/model/transform.h"
 
 namespace limpid::scene {
 
@@ -53,7 +54,7 @@ class PictureSize {
     PictureSize(const mat4& view, float fov) : toView_(glm::inverse(view)), slope_(std::tan(0.5f * fov)) {}
 
     void add(const vec3& point) {
-        const vec3 p(toView_ * vec4(point, 1.0f));
+        const vec3 p = transformPoint(toView_, point);
         const vec2 at = vec2(p) / (2.0f * slope_ * std::max(-p.z, 1e-20f));
         lower_ = glm::min(lower_, at);
         upper_ = glm::max(upper_, at);

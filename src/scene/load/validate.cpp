@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/model/aabb.h"
 #include "scene/model/transform.h"
 #include "scene/prepare/mesh_repair.h"
 
@@ -119,10 +120,8 @@ Fault checkMaterial(const Material& m, size_t textures) {
 
 /// Checks the mesh's bounds in a space.
 bool staysInRange(const vec3& lower, const vec3& upper, const mat4& toSpace) {
-    for (int corner = 0; corner < 8; ++corner) {
-        const vec3 point(corner & 1 ? upper.x : lower.x, corner & 2 ? upper.y : lower.y,
-                         corner & 4 ? upper.z : lower.z);
-        const vec3 size = glm::abs(transformPoint(toSpace, point));
+    for (int i = 0; i < 8; ++i) {
+        const vec3 size = glm::abs(transformPoint(toSpace, Aabb{lower, upper}.corner(i)));
         if (!(size.x < coordinateLimit && size.y < coordinateLimit && size.z < coordinateLimit)) return false;
     }
     return true;

@@ -5,7 +5,7 @@
 
 namespace limpid::scene {
 
-/// `matrix` is affine: its last row is 0, 0, 0, 1.
+/// The last row of `matrix` is ignored.
 inline vec3 transformPoint(const mat4& matrix, const vec3& point) {
     return vec3(matrix * vec4(point, 1.0f));
 }
