@@ -30,7 +30,7 @@ class WeightsTest(unittest.TestCase):
         frame.references = tuple(torch.rand_like(image) for image in frame.references)
         self.assertTrue(torch.equal(loss.weights_of(frame), before))
 
-    def test_relative_differences_are_those_of_relmse(self):
+    def test_relative_differences_are_like_those_of_relmse(self):
         grey = torch.full((1, 3, 8, 8), 2.0)
         frame = frame_with((grey, grey), grey)
         self.assertTrue(torch.equal(loss.weights_of(frame, 0.0), loss.weights_of(frame)))

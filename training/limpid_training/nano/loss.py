@@ -57,7 +57,7 @@ def blurred(image, radius=1):
 
 
 def squared_brightness(frame):
-    """Returns what squared differences are divided by to be relative, as in relMSE (docs/metrics.md)."""
+    """Returns what squared differences are divided by to be relative, much like relMSE (docs/metrics.md)."""
     return blurred(features.luminance(frame.svgf), 2) ** 2 + 0.01
 
 
