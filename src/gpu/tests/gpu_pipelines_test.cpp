@@ -9,6 +9,15 @@
 namespace limpid::gpu {
 namespace {
 
+/// A pipeline for each width.
+void dispatchSize(FrameGraph& graph, ImageHandle image, uint32_t width, Extent extent) {
+    graph.dispatch({.pass = "size",
+                    .shader = shaders::test_group_size_comp,
+                    .bindings = {{"result", image}},
+                    .constants = {{"groupWidth", width}, {"groupHeight", 4}},
+                    .extent = extent});
+}
+
 TEST_F(GpuTest, NewPipelinesAreAnnouncedOnce) {
     FrameGraph graph;
     size_t before = device().pipelineCount();
@@ -20,11 +29,7 @@ TEST_F(GpuTest, NewPipelinesAreAnnouncedOnce) {
     const auto run = [&](uint32_t width) {
         graph.beginFrame();
         const ImageHandle image = graph.transient("size", Format::RG32Uint, odd);
-        graph.dispatch({.pass = "size",
-                        .shader = shaders::test_group_size_comp,
-                        .bindings = {{"result", image}},
-                        .constants = {{"groupWidth", width}, {"groupHeight", 4}},
-                        .extent = odd});
+        dispatchSize(graph, image, width, odd);
         graph.execute(device());
     };
     run(8);
@@ -39,11 +44,7 @@ TEST_F(GpuTest, NewPipelinesAreAnnouncedOnce) {
     FrameGraph other;
     other.beginFrame();
     const ImageHandle image = other.transient("size", Format::RG32Uint, odd);
-    other.dispatch({.pass = "size",
-                    .shader = shaders::test_group_size_comp,
-                    .bindings = {{"result", image}},
-                    .constants = {{"groupWidth", 2}, {"groupHeight", 4}},
-                    .extent = odd});
+    dispatchSize(other, image, 2, odd);
     EXPECT_FALSE(other.isPrepared(device()));
     std::jthread([&] { other.prepareBeside(device()); }).join();
     EXPECT_TRUE(other.isPrepared(device()));
@@ -61,11 +62,7 @@ TEST_F(GpuTest, PipelinesThatAreNotUsedForLongAreDestroyed) {
         graph.beginFrame();
         const ImageHandle image = graph.transient("size", Format::RG32Uint, {3, 2});
         for (int i = 0; i < dispatches; ++i) {
-            graph.dispatch({.pass = "size",
-                            .shader = shaders::test_group_size_comp,
-                            .bindings = {{"result", image}},
-                            .constants = {{"groupWidth", width}, {"groupHeight", 4}},
-                            .extent = {3, 2}});
+            dispatchSize(graph, image, width, Extent{3, 2});
         }
         graph.execute(few);
         EXPECT_EQ(graph.downloadUint(few, image).at(0), width);
@@ -92,13 +89,7 @@ TEST_F(GpuTest, PipelinesInUseAreNotDestroyed) {
         graph.beginFrame();
         image = graph.transient("size", Format::RG32Uint, {3, 2});
     };
-    const auto dispatch = [&](uint32_t width) {
-        graph.dispatch({.pass = "size",
-                        .shader = shaders::test_group_size_comp,
-                        .bindings = {{"result", image}},
-                        .constants = {{"groupWidth", width}, {"groupHeight", 4}},
-                        .extent = {3, 2}});
-    };
+    const auto dispatch = [&](uint32_t width) { dispatchSize(graph, image, width, Extent{3, 2}); };
     // The second frame takes the first pipeline's place while the device may still compute the first frame.
     begin();
     dispatch(1);
