@@ -88,7 +88,7 @@ struct DeviceOptions {
     /// Called from several threads at once. None: the driver does it, as on GPUs.
     Specialise specialise;
     /// Where there are so many pipelines, a new one takes the place of the oldest that the last 1,024
-    /// dispatches have not used. On lavapipe, each takes 0.5 to 10 MB.
+    /// dispatches have not used. On lavapipe, each takes 0.5 MB or more.
     size_t mostPipelines = 128;
 };
 
