@@ -39,6 +39,10 @@ if(LIMPID_SANITIZE)
 else()
   target_compile_options(limpid_test_options INTERFACE $<$<CONFIG:Release,RelWithDebInfo>:-O1>)
 endif()
+# The files of folders that set LIMPID_LIGHT: commands, windows, reports. They wait for others to compute, and at -O3 they
+# are half of a clean build's time.
+add_library(limpid_light_options INTERFACE)
+target_compile_options(limpid_light_options INTERFACE $<$<CONFIG:Release,RelWithDebInfo>:-O1>)
 if(LIMPID_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
     message(FATAL_ERROR "LIMPID_FUZZ needs clang, which has libFuzzer: use the preset 'fuzz'")
@@ -97,13 +101,16 @@ function(limpid_add_pch NAME)
   target_precompile_headers(${NAME} PRIVATE ${LIMPID_PCH_HEADERS} ${ARG_HEADERS})
 endfunction()
 
-# limpid_precompile(): creates the two sets of precompiled headers. Call it after their packages are found.
+# limpid_precompile(): creates the sets of precompiled headers. Call it after their packages are found. GCC compiles what
+# uses a set at the optimisation of the set, so each level has its own.
 function(limpid_precompile)
   if(NOT LIMPID_PCH OR LIMPID_FUZZ)
     return()
   endif()
   file(WRITE ${PROJECT_BINARY_DIR}/pch/pch.cpp "// Compiled only to have its headers parsed.\n")
   limpid_add_pch(limpid_pch)
+  limpid_add_pch(limpid_light_pch)
+  target_link_libraries(limpid_light_pch PRIVATE limpid_light_options)
   if(LIMPID_TESTS)
     limpid_add_pch(limpid_test_pch DEPS GTest::gmock GTest::gtest HEADERS <gmock/gmock.h> <gtest/gtest.h>)
     target_link_libraries(limpid_test_pch PRIVATE limpid_test_options)
@@ -120,18 +127,23 @@ function(limpid_use_pch NAME FROM)
   endif()
 endfunction()
 
-# limpid_unity(TARGET): compiles several files of the target as one. A clean build takes half the time, but a change of
-# one file recompiles others, too. Meant for CI.
-function(limpid_unity NAME)
-  set_target_properties(${NAME} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+# limpid_unity(TARGET FILES): compiles up to FILES files of the target as one. A clean build takes half the time, but a
+# change of one file recompiles others, too. Meant for CI.
+function(limpid_unity NAME FILES)
+  set_target_properties(${NAME} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${FILES})
   target_link_libraries(${NAME} PRIVATE limpid_unity_options)
 endfunction()
 
-# limpid_quick(TARGET): applies LIMPID_PCH and LIMPID_UNITY to a target that is not a test.
+# limpid_quick(TARGET): applies LIMPID_PCH, LIMPID_UNITY and the folder's LIMPID_LIGHT to a target that is not a test.
 function(limpid_quick NAME)
-  limpid_use_pch(${NAME} limpid_pch)
+  if(LIMPID_LIGHT)
+    limpid_use_pch(${NAME} limpid_light_pch)
+    target_link_libraries(${NAME} PRIVATE limpid_light_options)
+  else()
+    limpid_use_pch(${NAME} limpid_pch)
+  endif()
   if(LIMPID_UNITY)
-    limpid_unity(${NAME})
+    limpid_unity(${NAME} 16)
   endif()
 endfunction()
 
@@ -350,7 +362,7 @@ function(limpid_test NAME)
   target_compile_definitions(${NAME} PRIVATE LIMPID_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   limpid_use_pch(${NAME} limpid_test_pch)
   if(LIMPID_UNITY)
-    limpid_unity(${NAME})
+    limpid_unity(${NAME} 8)
   endif()
   if(ARG_LABELS STREQUAL fast)
     add_dependencies(limpid_fast_tests ${NAME})

@@ -88,7 +88,7 @@ studio::TracerChoice tracerChoice(const StudioChoice& choice) {
 }
 
 studio::SceneLoader sceneLoader() {
-    return [](scene::SceneSource source, const Progress& progress) {
+    return [](scene::SceneSource source, const limpid::Progress& progress) {
         source.lightFile.clear();  // the studio applies these edits itself
         return scene::openScene(source, progress);
     };

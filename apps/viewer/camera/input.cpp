@@ -7,22 +7,22 @@
 namespace limpid::viewer {
 namespace {
 
-using Kind = InputEvent::Kind;
+using Event = InputEvent::Kind;
 
 bool isShift(const InputEvent& event) {
-    return event.kind == Kind::Key &&
+    return event.kind == Event::Key &&
            (event.code == GLFW_KEY_LEFT_SHIFT || event.code == GLFW_KEY_RIGHT_SHIFT);
 }
 
 /// While one of these is held, keys are commands.
 bool isControl(const InputEvent& event) {
-    return event.kind == Kind::Key && event.code >= GLFW_KEY_LEFT_SHIFT &&
+    return event.kind == Event::Key && event.code >= GLFW_KEY_LEFT_SHIFT &&
            event.code <= GLFW_KEY_RIGHT_SUPER && !isShift(event);
 }
 
 /// A key that produces a character reports it separately as Text.
 bool isPrintable(const InputEvent& event) {
-    return event.kind == Kind::Key && event.code >= GLFW_KEY_SPACE && event.code < GLFW_KEY_ESCAPE;
+    return event.kind == Event::Key && event.code >= GLFW_KEY_SPACE && event.code < GLFW_KEY_ESCAPE;
 }
 
 /// True if `earlier`, of the same frame, could no longer be distinguished from `later`. `typing`: printable
@@ -30,23 +30,24 @@ bool isPrintable(const InputEvent& event) {
 bool hides(const InputEvent& later, const InputEvent& earlier, bool typing) {
     const auto matters = [&](const InputEvent& e) { return !typing || (!isPrintable(e) && !isShift(e)); };
     switch (later.kind) {
-        case Kind::Move:
-            return earlier.kind == Kind::Button || earlier.kind == Kind::Wheel;
-        case Kind::Button:
+        case Event::Move:
+            return earlier.kind == Event::Button || earlier.kind == Event::Wheel;
+        case Event::Button:
             // The interface needs to find the control under the mouse before a button counts; and movement
             // before a release happened while the button was down.
-            return (earlier.kind == Kind::Button && earlier.code == later.code) || earlier.kind == Kind::Move;
-        case Kind::Wheel:
+            return (earlier.kind == Event::Button && earlier.code == later.code) ||
+                   earlier.kind == Event::Move;
+        case Event::Wheel:
             return false;
-        case Kind::Key:
-            if (isControl(later)) return earlier.kind != Kind::Move;
+        case Event::Key:
+            if (isControl(later)) return earlier.kind != Event::Move;
             if (isShift(later))
-                return earlier.kind == Kind::Button || (earlier.kind == Kind::Key && matters(earlier));
-            return earlier.kind == Kind::Key && earlier.code == later.code && matters(later);
-        case Kind::Text:
+                return earlier.kind == Event::Button || (earlier.kind == Event::Key && matters(earlier));
+            return earlier.kind == Event::Key && earlier.code == later.code && matters(later);
+        case Event::Text:
             // Text fields handle a frame's characters before its keys.
-            return earlier.kind == Kind::Button ||
-                   (earlier.kind == Kind::Key && earlier.down && matters(earlier) && !isPrintable(earlier) &&
+            return earlier.kind == Event::Button ||
+                   (earlier.kind == Event::Key && earlier.down && matters(earlier) && !isPrintable(earlier) &&
                     !isShift(earlier) && !isControl(earlier));
     }
     return false;
@@ -62,11 +63,11 @@ std::vector<InputEvent> InputQueue::take(bool typing) {
         if (std::any_of(taken.begin(), taken.end(),
                         [&](const InputEvent& earlier) { return hides(next, earlier, prints); }))
             break;
-        if (next.kind == Kind::Move && !taken.empty() && taken.back().kind == Kind::Move)
+        if (next.kind == Event::Move && !taken.empty() && taken.back().kind == Event::Move)
             taken.back() = next;
         else
             taken.push_back(next);
-        if (next.kind == Kind::Button && !next.down) ++clicks_;
+        if (next.kind == Event::Button && !next.down) ++clicks_;
         if (isControl(next)) {
             if (next.down)
                 controls_.insert(next.code);

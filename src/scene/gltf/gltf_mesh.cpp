@@ -8,13 +8,12 @@
 #include <utility>
 
 #include "scene/gltf/document/gltf_access.h"
+#include "scene/gltf/document/primitive_mode.h"
 #include "scene/model/transform.h"
 #include "scene/prepare/mesh_repair.h"
 
 namespace limpid::scene::gltf {
 namespace {
-
-enum Mode : uint64_t { Triangles = 4, TriangleStrip = 5, TriangleFan = 6 };
 
 /// Returns three vertices per triangle from a list, a strip or a fan (glTF 2.0, section 3.7.2.1).
 std::vector<uint32_t> toTriangles(std::vector<uint32_t> order, uint64_t mode) {

@@ -14,15 +14,15 @@ struct Parts {
 };
 constexpr Parts ofPicture{2, 2}, ofList{4, 1};
 
-struct Level {
+struct PyramidLevel {
     std::vector<double> sums;  ///< of each record
     std::vector<vec4> records;
     uint32_t width = 0, height = 0;
 };
 
 /// The level above one whose records have these sums.
-Level levelAbove(const std::vector<double>& sums, uint32_t width, uint32_t height, Parts parts) {
-    Level level;
+PyramidLevel levelAbove(const std::vector<double>& sums, uint32_t width, uint32_t height, Parts parts) {
+    PyramidLevel level;
     level.width = (width - 1) / parts.x + 1;
     level.height = (height - 1) / parts.y + 1;
     level.sums.resize(size_t{level.width} * level.height);
@@ -51,7 +51,7 @@ WeightPyramid build(std::vector<double> weights, uint32_t width, uint32_t height
         weight = sum > 0.0 ? weight / sum : even;
         pyramid.probabilities.push_back(static_cast<float>(weight));
     }
-    std::vector<Level> levels;
+    std::vector<PyramidLevel> levels;
     while (weights.size() > 1) {
         levels.push_back(levelAbove(weights, width, height, parts));
         weights = std::move(levels.back().sums);

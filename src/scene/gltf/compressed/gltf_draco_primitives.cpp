@@ -12,11 +12,10 @@
 #include "scene/gltf/compressed/gltf_draco.h"
 #include "scene/gltf/document/gltf_access.h"
 #include "scene/gltf/document/gltf_document.h"
+#include "scene/gltf/document/primitive_mode.h"
 
 namespace limpid::scene::gltf {
 namespace {
-
-enum Mode : uint64_t { Triangles = 4, TriangleStrip = 5 };
 
 /// A primitive's Draco extension, checked against the primitive.
 struct Source {
