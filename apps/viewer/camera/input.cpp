@@ -7,22 +7,22 @@
 namespace limpid::viewer {
 namespace {
 
-using Event = InputEvent::Kind;
+using EventKind = InputEvent::Kind;
 
 bool isShift(const InputEvent& event) {
-    return event.kind == Event::Key &&
+    return event.kind == EventKind::Key &&
            (event.code == GLFW_KEY_LEFT_SHIFT || event.code == GLFW_KEY_RIGHT_SHIFT);
 }
 
 /// While one of these is held, keys are commands.
 bool isControl(const InputEvent& event) {
-    return event.kind == Event::Key && event.code >= GLFW_KEY_LEFT_SHIFT &&
+    return event.kind == EventKind::Key && event.code >= GLFW_KEY_LEFT_SHIFT &&
            event.code <= GLFW_KEY_RIGHT_SUPER && !isShift(event);
 }
 
 /// A key that produces a character reports it separately as Text.
 bool isPrintable(const InputEvent& event) {
-    return event.kind == Event::Key && event.code >= GLFW_KEY_SPACE && event.code < GLFW_KEY_ESCAPE;
+    return event.kind == EventKind::Key && event.code >= GLFW_KEY_SPACE && event.code < GLFW_KEY_ESCAPE;
 }
 
 /// True if `earlier`, of the same frame, could no longer be distinguished from `later`. `typing`: printable
@@ -30,25 +30,26 @@ bool isPrintable(const InputEvent& event) {
 bool hides(const InputEvent& later, const InputEvent& earlier, bool typing) {
     const auto matters = [&](const InputEvent& e) { return !typing || (!isPrintable(e) && !isShift(e)); };
     switch (later.kind) {
-        case Event::Move:
-            return earlier.kind == Event::Button || earlier.kind == Event::Wheel;
-        case Event::Button:
+        case EventKind::Move:
+            return earlier.kind == EventKind::Button || earlier.kind == EventKind::Wheel;
+        case EventKind::Button:
             // The interface needs to find the control under the mouse before a button counts; and movement
             // before a release happened while the button was down.
-            return (earlier.kind == Event::Button && earlier.code == later.code) ||
-                   earlier.kind == Event::Move;
-        case Event::Wheel:
+            return (earlier.kind == EventKind::Button && earlier.code == later.code) ||
+                   earlier.kind == EventKind::Move;
+        case EventKind::Wheel:
             return false;
-        case Event::Key:
-            if (isControl(later)) return earlier.kind != Event::Move;
+        case EventKind::Key:
+            if (isControl(later)) return earlier.kind != EventKind::Move;
             if (isShift(later))
-                return earlier.kind == Event::Button || (earlier.kind == Event::Key && matters(earlier));
-            return earlier.kind == Event::Key && earlier.code == later.code && matters(later);
-        case Event::Text:
+                return earlier.kind == EventKind::Button ||
+                       (earlier.kind == EventKind::Key && matters(earlier));
+            return earlier.kind == EventKind::Key && earlier.code == later.code && matters(later);
+        case EventKind::Text:
             // Text fields handle a frame's characters before its keys.
-            return earlier.kind == Event::Button ||
-                   (earlier.kind == Event::Key && earlier.down && matters(earlier) && !isPrintable(earlier) &&
-                    !isShift(earlier) && !isControl(earlier));
+            return earlier.kind == EventKind::Button ||
+                   (earlier.kind == EventKind::Key && earlier.down && matters(earlier) &&
+                    !isPrintable(earlier) && !isShift(earlier) && !isControl(earlier));
     }
     return false;
 }
@@ -63,11 +64,11 @@ std::vector<InputEvent> InputQueue::take(bool typing) {
         if (std::any_of(taken.begin(), taken.end(),
                         [&](const InputEvent& earlier) { return hides(next, earlier, prints); }))
             break;
-        if (next.kind == Event::Move && !taken.empty() && taken.back().kind == Event::Move)
+        if (next.kind == EventKind::Move && !taken.empty() && taken.back().kind == EventKind::Move)
             taken.back() = next;
         else
             taken.push_back(next);
-        if (next.kind == Event::Button && !next.down) ++clicks_;
+        if (next.kind == EventKind::Button && !next.down) ++clicks_;
         if (isControl(next)) {
             if (next.down)
                 controls_.insert(next.code);
