@@ -28,7 +28,8 @@ TEST_F(CliTest, WrongUsageIsExitCode2) {
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--set no.such=1", 2, "no.such");
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--camera 7", 2, "its cameras are");
     expect("render builtin:cornell -o " + path("a.exr") + tiny + "--aov nonsense", 2, "the layers are");
-    expect("render builtin:cornell -o " + path("a.png") + tiny + "--exposure nan", 2, "range");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--exposure nan", 2,
+           "neither 'auto' nor a number of stops from -60 to 60");
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--dump none", 2, "its passes are");
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--env a.hdr --background 1,1,1", 2,
            "give one of them");

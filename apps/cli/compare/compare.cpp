@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -20,6 +19,7 @@
 #include "image/io/picture.h"
 #include "image/metrics/metrics.h"
 #include "image/tonemap.h"
+#include "renderer/layers/picture_name.h"
 
 namespace limpid::cli {
 namespace {
@@ -29,20 +29,6 @@ struct Arguments {
     std::string test, reference, errorMap, hdrErrorMap, exposure;
     bool json = false;
 };
-
-/// Returns the stops given by --exposure; none for "auto".
-std::optional<float> parseExposure(const std::string& text) {
-    if (text == "auto") return std::nullopt;
-    const std::string_view number = std::string_view(text).substr(text.starts_with('+') ? 1 : 0);
-    float stops = 0.0f;
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), stops);
-    // 2^stops, and radiance multiplied by it, must stay within the range of a float.
-    if (error != std::errc{} || end != number.data() + number.size() || !(std::abs(stops) <= 60.0f)) {
-        throw UsageError(
-            fmt::format("--exposure: '{}' is neither 'auto' nor a number of stops from -60 to 60", text));
-    }
-    return stops;
-}
 
 /// Parses the output name of a map. Reports faults before any work is done.
 std::optional<FramePattern> parseMap(const char* option, const std::string& text, bool sequence) {

@@ -7,7 +7,7 @@
 
 namespace limpid {
 
-/// Stops, or nothing for "auto". Throws UsageError.
+/// The stops that --exposure gives, from -60 to 60; none for "auto". Throws UsageError.
 std::optional<float> parseExposure(const std::string& text);
 
 bool isExr(const std::filesystem::path& path);
