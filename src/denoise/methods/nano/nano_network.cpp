@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/half.h"
 #include "nano.safetensors.h"
 
 namespace limpid::denoise {
@@ -54,12 +55,31 @@ std::span<const std::byte> dataOf(const std::string& name, std::span<const uint3
     return file.subspan(before, bytes);
 }
 
+/// The layer's biases, then the weights of each input, as NanoFinestParams has them.
+std::vector<float> byInput(const NanoLayer& layer, std::span<const std::byte> data) {
+    std::vector<float> weights;
+    const auto append = [&](uint32_t texel) {
+        std::array<uint16_t, NANO_GROUP> halves{};
+        std::memcpy(halves.data(), &data[(layer.weights + texel) * texelBytes], texelBytes);
+        for (const uint16_t half : halves) weights.push_back(halfToFloat(half));
+    };
+    for (uint32_t group = 0; group < layer.outputs; ++group) append(group);
+    for (uint32_t input = 0; input < layer.inputs * NANO_GROUP; ++input) {
+        for (uint32_t group = 0; group < layer.outputs; ++group)
+            append(layer.outputs + (input / NANO_GROUP * layer.outputs + group) * NANO_GROUP +
+                   input % NANO_GROUP);
+    }
+    return weights;
+}
+
 }  // namespace
 
 NanoNetwork makeNanoNetwork(const std::string& name, const NanoShape& shape, const NanoShares& shares,
                             std::span<const uint32_t> file) {
     const auto& [widths, depths] = shape;
-    NanoNetwork network{.name = name, .levels = {}, .shares = shares, .weights = {}};
+    if (widths[0] * NANO_GROUP > NANO_MOST_FINEST)
+        throw Error("the finest level of '" + name + "' has more channels than NANO_MOST_FINEST");
+    NanoNetwork network{.name = name, .levels = {}, .shares = shares, .weights = {}, .finestLogits = {}};
     Layout layout;
     for (size_t i = 0; i < NANO_LEVELS; ++i) {
         NanoLevel& level = network.levels[i];
@@ -81,6 +101,7 @@ NanoNetwork makeNanoNetwork(const std::string& name, const NanoShape& shape, con
     network.weights.assign(data.begin(), data.end());
     constexpr size_t row = NANO_WEIGHTS_WIDTH * texelBytes;
     network.weights.resize((data.size() + row - 1) / row * row);
+    network.finestLogits = byInput(network.levels[0].logits, data);
     return network;
 }
 

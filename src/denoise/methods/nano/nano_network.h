@@ -52,7 +52,8 @@ struct NanoNetwork {
     std::string name;  ///< its passes' names begin with it
     std::array<NanoLevel, NANO_LEVELS> levels;
     NanoShares shares;
-    std::vector<std::byte> weights;  ///< texels of eight halves; rows of NANO_WEIGHTS_WIDTH, filled with 0
+    std::vector<std::byte> weights;   ///< texels of eight halves; rows of NANO_WEIGHTS_WIDTH, filled with 0
+    std::vector<float> finestLogits;  ///< those of the last layer at the finest level, for NanoFinestParams
 };
 
 /// `file`: of weights, as training/limpid_training/nano/weights.py writes them. Throws Error if it does not

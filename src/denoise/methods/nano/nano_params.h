@@ -27,6 +27,8 @@ LIMPID_CONST uint NANO_COLUMNS = 16u, NANO_SUBGROUPS = 8u, NANO_SMALL_SUBGROUPS 
 LIMPID_CONST int NANO_REACH = 1, NANO_FINEST_REACH = 2;
 LIMPID_CONST int NANO_COARSER_TAPS = 4;
 LIMPID_CONST int NANO_LOGIT_GROUPS = 2, NANO_FINEST_LOGIT_GROUPS = 4;
+// Logits of both signals at the finest level, and most channels that they are made from.
+LIMPID_CONST int NANO_FINEST_LOGITS = 2 * NANO_FINEST_LOGIT_GROUPS * NANO_GROUP, NANO_MOST_FINEST = 48;
 // Taps of a convolution.
 LIMPID_CONST uint NANO_POINT = 0u;   // 1x1: of the same pixel, then of the pixel of the next coarser level
 LIMPID_CONST uint NANO_HALVE = 1u;   // 2x2: of the four pixels of the next finer level
@@ -64,6 +66,13 @@ struct NanoFilterParams {
     uint logitGroups;  // of each signal
     uint weights;      // index of the layer's first texel
     float strength;
+};
+
+// The finest level's, with the weights of its logits. Invocations read the same ones at the same time, for
+// which uniform blocks are made, and need not convert them from halves.
+struct NanoFinestParams {
+    NanoFilterParams level;
+    float logits[(1 + NANO_MOST_FINEST) * NANO_FINEST_LOGITS];  // biases, then the weights of each input
 };
 
 #undef LIMPID_CONST

@@ -1,5 +1,6 @@
 #include "denoise/methods/nano/nano_recorder.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string>
@@ -241,11 +242,11 @@ class TileRecorder {
 
     void finest(ImageHandle channels, ImageHandle coarser) {
         const SvgfSignalStages &a = svgf_.signals.front(), &b = svgf_.signals.back();
-        const NanoFilterParams params = filterParams(0);
+        NanoFinestParams params{.level = filterParams(0), .logits = {}};
+        std::ranges::copy(network_.finestLogits, params.logits);
         graph_.dispatch({.pass = name("filter", 0) + suffix_,
                          .shader = choose(shaders::nano_finest_comp, shaders::nano_finest_buffers_comp),
                          .bindings = {{"inputs", channels},
-                                      {"weights", picture_.weights},
                                       {"light", light_[0]},
                                       {"coarser", coarser},
                                       {"filteredA", a.filtered},
@@ -255,9 +256,9 @@ class TileRecorder {
                                       {"stableA", a.stable},
                                       {"stableB", picture_.stableToo}},
                          .params = gpu::paramsOf(params),
-                         .constants = {{"COARSER", 1u},
-                                       {"STABILISE", replacesStable() ? 1u : 0u},
-                                       {"TWO_SIGNALS", twoSignals() ? 1u : 0u}},
+                         .constants = {{"STABILISE", replacesStable() ? 1u : 0u},
+                                       {"TWO_SIGNALS", twoSignals() ? 1u : 0u},
+                                       {"INPUT_GROUPS", network_.levels[0].logits.inputs}},
                          .extent = filterThreads(tile_.inner)});
     }
 

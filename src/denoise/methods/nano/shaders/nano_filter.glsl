@@ -14,31 +14,40 @@ const int PIXELS = 1;
 const int PIXELS = NANO_IMAGE_PIXELS;
 #endif
 const int EDGE = 2 * REACH + 1, OWN_TAPS = EDGE * EDGE, ALL_TAPS = OWN_TAPS + NANO_COARSER_TAPS;
-layout(constant_id = 0) const bool COARSER = true;  // there is a coarser level
 #ifdef LIMPID_NANO_FINEST
-layout(constant_id = 1) const bool STABILISE = true;  // the next frame is stabilised by the result
-layout(constant_id = 2) const bool TWO_SIGNALS = true;
-#endif
+const bool COARSER = true;                            // there is a coarser level
+layout(constant_id = 0) const bool STABILISE = true;  // the next frame is stabilised by the result
+layout(constant_id = 1) const bool TWO_SIGNALS = true;
+layout(constant_id = 2) const uint INPUT_GROUPS = 2u;
+
+layout(set = 0, binding = 0, scalar) uniform Params {
+    NanoFinestParams finest;
+};
+#define params finest.level
+READ_HALF4(4, filteredA);
+READ_HALF4(5, filteredB);
+WRITE_HALF4(6, resultA);
+WRITE_HALF4(7, resultB);
+WRITE_UINT1(8, stableA);  // svgf_stable.glsl
+WRITE_UINT1(9, stableB);
+#else
+layout(constant_id = 0) const bool COARSER = true;
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     NanoFilterParams params;
 };
-READ_TEXELS(1, inputs);
-READ_WEIGHTS(2, weights);
-READ_TEXELS(3, light);
-READ_TEXELS(4, coarser);
-#ifdef LIMPID_NANO_FINEST
-READ_HALF4(5, filteredA);
-READ_HALF4(6, filteredB);
-WRITE_HALF4(7, resultA);
-WRITE_HALF4(8, resultB);
-WRITE_UINT1(9, stableA);  // svgf_stable.glsl
-WRITE_UINT1(10, stableB);
-#else
+READ_WEIGHTS(4, weights);
 WRITE_TEXELS(5, result);
 #endif
+READ_TEXELS(1, inputs);
+READ_TEXELS(2, light);
+READ_TEXELS(3, coarser);
 
+#ifdef LIMPID_NANO_FINEST
+#include "denoise/methods/nano/shaders/nano_finest_logits.glsl"
+#else
 #include "denoise/methods/nano/shaders/nano_logits.glsl"
+#endif
 
 /// Of one signal and pixel.
 struct Logits {
@@ -52,7 +61,7 @@ struct AllLogits {
 AllLogits logitsOfSignal(uint pixels[PIXELS], uint signal) {
     AllLogits logits;
     [[unroll]] for (int group = 0; group < GROUPS; ++group) {
-        const LogitsOfPixels eight = logitsOf(pixels, signal * params.logitGroups + uint(group));
+        const LogitsOfPixels eight = logitsOf(pixels, signal * uint(GROUPS) + uint(group));
         [[unroll]] for (int p = 0; p < PIXELS; ++p) logits.pixels[p].values[group] = eight.values[p];
     }
     return logits;
