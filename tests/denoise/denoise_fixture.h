@@ -78,6 +78,7 @@ class DenoiseTest : public GpuTest {
         denoise::DenoiserInput input = denoise::upload(graph_, frame);
         input.filters = filters_;
         input.matrices = matrices_;
+        input.cpu = cpu_ && device().isCpu();
         input.largestBuffer = largestBuffer_;
         output_ = method.record(graph_, input, settings, networks_);
         graph_.execute(device());
@@ -89,6 +90,7 @@ class DenoiseTest : public GpuTest {
     denoise::DenoiserNetworks networks_;
     gpu::Backing filters_ = gpu::Backing::Image;
     bool matrices_ = false;  ///< cooperative matrices, on devices that have them
+    bool cpu_ = true;        ///< oneDNN computes networks on devices that are the CPU, as in the program
     uint64_t largestBuffer_ = UINT64_MAX;
 };
 

@@ -14,6 +14,7 @@
 #include "base/half.h"
 #include "denoise/methods/film/film_network.h"
 #include "denoise/methods/nano/nano_network.h"
+#include "denoise/nano_host/network_host.h"
 #include "denoise/stages/ingest/ingest.h"
 #include "tests/denoise/denoise_fixture.h"
 #include "tests/denoise/svgf_fixture.h"
@@ -52,6 +53,7 @@ struct Case {
     Change change = Change::None;
     SvgfSettings svgf{};
     float strength = 1.0f;
+    bool onCpu = false;
 };
 
 /// Sets two components of every `step`th pixel, beginning with the pixel `at`.
@@ -141,6 +143,8 @@ struct Layer {
 
 class NanoTest : public DenoiseTest {
   protected:
+    NanoTest() { cpu_ = false; }
+
     const denoise::Denoiser& method() { return *denoise::findDenoiser(method_); }
     bool isFilm() const { return method_ == "film"; }
     std::string pass(const std::string& name) const { return method_ + "/" + name; }
@@ -160,6 +164,10 @@ class NanoTest : public DenoiseTest {
     std::string withoutMatrices() {
         return "NOT TESTED: " + device().info().name +
                " has no cooperative matrices (VK_NV_cooperative_matrix)";
+    }
+    bool computesOnCpu() { return device().isCpu() && denoise::networkHost() != nullptr; }
+    std::string notOnCpu() {
+        return "NOT TESTED: " + device().info().name + " is not the CPU, or Limpid was built without oneDNN";
     }
     std::vector<Layer> layers(const Case& c);
 
@@ -278,7 +286,10 @@ using CaseParam = std::tuple<Case, gpu::FilterChoice>;
 std::string nameOf(const testing::TestParamInfo<CaseParam>& info) {
     const auto& [c, choice] = info.param;
     const bool images = choice.backing == gpu::Backing::Image;
-    return std::string(c.name) + (choice.matrices ? "Matrices" : images ? "Images" : "Buffers");
+    return std::string(c.name) + (choice.cpu        ? "OnCpu"
+                                  : choice.matrices ? "Matrices"
+                                  : images          ? "Images"
+                                                    : "Buffers");
 }
 
 class NanoCaseTest : public NanoTest, public testing::WithParamInterface<CaseParam> {};
@@ -286,7 +297,9 @@ class NanoCaseTest : public NanoTest, public testing::WithParamInterface<CasePar
 TEST_P(NanoCaseTest, TheLightAgreesWithTheFormulasInDouble) {
     const auto& [c, choice] = GetParam();
     if (choice.matrices && !hasMatrices()) GTEST_SKIP() << withoutMatrices();
+    if (choice.cpu && !computesOnCpu()) GTEST_SKIP() << notOnCpu();
     method_ = c.method;
+    cpu_ = choice.cpu;
     filters_ = choice.backing;
     matrices_ = choice.matrices;
     DenoiserSettings settings;
@@ -303,7 +316,7 @@ TEST_P(NanoCaseTest, TheLightAgreesWithTheFormulasInDouble) {
 }
 
 constexpr gpu::FilterChoice inImages{}, inBuffers{.backing = gpu::Backing::Buffer},
-    withMatrices{.backing = gpu::Backing::Buffer, .matrices = true};
+    withMatrices{.backing = gpu::Backing::Buffer, .matrices = true}, onCpu{.cpu = true};
 
 /// Filters in buffers differ in where they load and store: cases of sizes, signals and histories tell.
 INSTANTIATE_TEST_SUITE_P(
@@ -314,7 +327,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      Case{.name = "Smaller", .change = Change::Smaller},
                                      Case{.name = "NoPast",
                                           .svgf = {.stabilisationAlpha = 1.0f, .levels = 1}}),
-                     testing::Values(inImages, inBuffers, withMatrices)),
+                     testing::Values(inImages, inBuffers, withMatrices, onCpu)),
     nameOf);
 /// What is not of the network is the same as with nano.
 INSTANTIATE_TEST_SUITE_P(Film, NanoCaseTest,
@@ -323,7 +336,7 @@ INSTANTIATE_TEST_SUITE_P(Film, NanoCaseTest,
                                                                .method = "film",
                                                                .separate = false,
                                                                .change = Change::Nans}),
-                                          testing::Values(inImages, inBuffers, withMatrices)),
+                                          testing::Values(inImages, inBuffers, withMatrices, onCpu)),
                          nameOf);
 INSTANTIATE_TEST_SUITE_P(
     NotInBuffers, NanoCaseTest,
@@ -339,7 +352,7 @@ INSTANTIATE_TEST_SUITE_P(
                         Case{.name = "NoLevels", .svgf = {.levels = 0}},
                         Case{.name = "OneLevelFedBack", .svgf = {.levels = 1, .historyLevel = 1}},
                         Case{.name = "HalfStrength", .strength = 0.5f}),
-        testing::Values(inImages, withMatrices)),
+        testing::Values(inImages, withMatrices, onCpu)),
     nameOf);
 
 TEST_F(NanoTest, WithoutStrengthItIsSvgf) {
@@ -360,8 +373,11 @@ TEST_F(NanoTest, WithoutStrengthItIsSvgf) {
 /// Tiles overlap as far as anything in them matters.
 TEST_F(NanoTest, TilesMakeTheSamePicture) {
     for (const Case& c :
-         {Case{.columns = 700, .rows = 20}, Case{.method = "film", .columns = 20, .rows = 724}}) {
+         {Case{.columns = 700, .rows = 20}, Case{.method = "film", .columns = 20, .rows = 724},
+          Case{.columns = 700, .rows = 20, .onCpu = true},
+          Case{.method = "film", .columns = 20, .rows = 724, .onCpu = true}}) {
         method_ = c.method;
+        cpu_ = c.onCpu && computesOnCpu();
         const uint64_t bytesOfPixel = isFilm() ? 96 : 32;
         std::vector<std::vector<float>> pictures;
         for (const uint64_t pixels : {UINT64_MAX / bytesOfPixel, uint64_t{700 * 24}}) {

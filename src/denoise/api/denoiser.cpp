@@ -4,15 +4,20 @@
 #include <array>
 
 #include "base/error.h"
+#include "denoise/nano_host/network_host.h"
 
 namespace limpid::denoise {
 namespace {
 
-/// Records a denoiser that has no network.
+/// Records a denoiser of the list of methods. If the device is the CPU, oneDNN computes networks, if it is
+/// there.
 template <DenoiserOutput (*recipe)(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&)>
 DenoiserOutput recordFilter(gpu::FrameGraph& graph, const DenoiserInput& input,
                             const DenoiserSettings& settings, const DenoiserNetworks&) {
-    return recipe(graph, input, settings);
+    if (!input.cpu || input.host) return recipe(graph, input, settings);
+    DenoiserInput onHost = input;
+    onHost.host = networkHost();
+    return recipe(graph, onHost, settings);
 }
 
 DenoiserOutput recordKpcn(gpu::FrameGraph& graph, const DenoiserInput& input,

@@ -10,6 +10,8 @@
 
 namespace limpid::denoise {
 
+class NanoHost;
+
 /// For debugging: whether methods with histories also tell why they kept or rejected those of each pixel, in
 /// DenoiserOutput::reasons.
 struct ReasonsRequest {
@@ -37,9 +39,12 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     vec2 jitter{0.0f};
     /// The jitter changes from frame to frame, to smooth edges: TaaSettings::frames is 2 by default.
     bool jitterChanges = false;
-    gpu::Backing filters = gpu::Backing::Image;  ///< these three: choose()
+    gpu::Backing filters = gpu::Backing::Image;  ///< these four: choose()
     bool matrices = false;
     uint64_t largestBuffer = UINT64_MAX;  ///< bytes
+    bool cpu = false;
+    /// Computes `nano` and `film` on the CPU; null: shaders do. It must outlive execute().
+    NanoHost* host = nullptr;
     /// Made by the ingest pass, or empty: what the surfaces stage makes of a frame's layers. With them,
     /// methods whose `readsLayers` is false find normal, depth and ids empty.
     gpu::History surfaces;
@@ -56,6 +61,7 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
         filters = choice.backing;
         matrices = choice.matrices;
         largestBuffer = choice.largestBuffer;
+        cpu = choice.cpu;
     }
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "neural/convolutions.h"
+#include "neural/exponential.h"
 #endif
 
 namespace limpid::denoise {
@@ -39,24 +39,6 @@ namespace {
 constexpr uint32_t bandRows = 16;
 /// The logit of taps that are excluded.
 constexpr float noLogit = -1e30f;
-
-/// Returns e^x with a relative error below 3e-7 for x from -87 to 0, and 0 for smaller x. Compilers can
-/// vectorise it. x is split into a power of 2, which becomes the float's exponent, and a remainder, for which
-/// a Taylor polynomial is used.
-inline float exponential(float x) {
-    const float t = std::max(x, -87.0f) * 1.44269504f;
-    const float whole = static_cast<float>(static_cast<int>(t - 0.5f));
-    const float f = (t - whole) * 0.693147181f;
-    float p = 1.0f / 720.0f;
-    p = p * f + 1.0f / 120.0f;
-    p = p * f + 1.0f / 24.0f;
-    p = p * f + 1.0f / 6.0f;
-    p = p * f + 0.5f;
-    p = p * f + 1.0f;
-    p = p * f + 1.0f;
-    const float scale = std::bit_cast<float>((static_cast<int>(whole) + 127) << 23);
-    return x < -87.0f ? 0.0f : p * scale;
-}
 
 /// The unpacked normals of a part of the picture (features.faces() in training/limpid_training/features.py).
 class Faces {
@@ -112,10 +94,12 @@ class RowOfMeans {
             faces_.mask(y * n, from, begin, end, logit);
             for (size_t x = begin; x < end; ++x) largest[x] = std::max(largest[x], logit[x]);
         });
-        eachTap(logits, count, row, y, [&](const float* logit, size_t from, size_t begin, size_t end) {
+        eachTap(logits, count, row, y, [&](float* logit, size_t from, size_t begin, size_t end) {
             const float* light = &light_[4 * (from + begin)];
+            for (size_t x = begin; x < end; ++x)
+                logit[x] = std::max(logit[x] - largest[x], neural::leastExponent);
             for (size_t x = begin; x < end; ++x, light += 4) {
-                const float weight = exponential(logit[x] - largest[x]);
+                const float weight = neural::exponential(logit[x]);
                 weights[x] += weight;
                 red[x] += weight * light[0];
                 green[x] += weight * light[1];

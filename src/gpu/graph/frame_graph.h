@@ -60,6 +60,7 @@ struct FilterChoice {
     Backing backing = Backing::Image;     ///< of images that they read many times
     bool matrices = false;                ///< cooperative matrices (DeviceInfo::cooperativeMatrices)
     uint64_t largestBuffer = UINT64_MAX;  ///< bytes; methods divide pictures whose buffers would be larger
+    bool cpu = false;                     ///< the device is the CPU, which sees all its memory
 };
 
 struct Image;  ///< defined in gpu/vulkan/memory/image.h, for gpu/ only

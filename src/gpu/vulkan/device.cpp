@@ -132,7 +132,8 @@ void Device::onNewPipelines(std::function<void()> listener) {
 FilterChoice filterChoice(const Device& device) {
     return {.backing = device.isCpu() ? Backing::Image : Backing::Buffer,
             .matrices = device.info().cooperativeMatrices,
-            .largestBuffer = device.maxStorageBufferBytes()};
+            .largestBuffer = device.maxStorageBufferBytes(),
+            .cpu = device.isCpu()};
 }
 
 }  // namespace limpid::gpu

@@ -35,6 +35,13 @@ struct NanoShape {
     std::array<uint32_t, NANO_LEVELS> depths;  ///< layers of 3x3 taps on the way down
 };
 
+/// The number of the logit that weighs a pixel in the next coarser level, the last of a signal's.
+constexpr uint32_t nanoPoolLogit(size_t level) {
+    const bool finest = level == 0;
+    const int edge = 2 * (finest ? NANO_FINEST_REACH : NANO_REACH) + 1, shares = finest ? 2 : 0;
+    return static_cast<uint32_t>(edge * edge + NANO_COARSER_TAPS + shares);
+}
+
 /// A workgroup's share of a layer on cooperative matrices, with the names of nano_matrix.glsl. Several
 /// workgroups share the outputs of a pixel if `tiles` is less than their number. All need at most 48 KB of
 /// shared memory.

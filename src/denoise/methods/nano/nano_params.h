@@ -75,6 +75,15 @@ struct NanoFinestParams {
     float logits[(1 + NANO_MOST_FINEST) * NANO_FINEST_LOGITS];  // biases, then the weights of each input
 };
 
+struct NanoMixParams {
+    uint width;  // of the tile's inner part
+    uint height;
+    uint innerX;  // its corner in the picture
+    uint innerY;
+    uint pitch;  // pixels in a row of the light
+    float strength;
+};
+
 #undef LIMPID_CONST
 #ifdef __cplusplus
 }  // namespace limpid::denoise

@@ -8,6 +8,7 @@
 
 #include "base/divide_up.h"
 #include "denoise/methods/methods.h"
+#include "denoise/methods/nano/nano_host.h"
 #include "denoise/methods/nano/nano_matrices.h"
 #include "denoise/methods/nano/nano_tiles.h"
 #include "nano_convolve.comp.h"
@@ -18,6 +19,8 @@
 #include "nano_filter_buffers.comp.h"
 #include "nano_finest.comp.h"
 #include "nano_finest_buffers.comp.h"
+#include "nano_mix.comp.h"
+#include "nano_mix_buffers.comp.h"
 #include "nano_pool.comp.h"
 #include "nano_pool_buffers.comp.h"
 
@@ -28,13 +31,6 @@ using gpu::Backing;
 using gpu::Extent;
 using gpu::Format;
 using gpu::ImageHandle;
-
-/// The number of the logit that weighs a pixel in the next coarser level, the last of a signal's.
-constexpr uint32_t poolLogit(size_t level) {
-    const bool finest = level == 0;
-    const int edge = 2 * (finest ? NANO_FINEST_REACH : NANO_REACH) + 1, shares = finest ? 2 : 0;
-    return static_cast<uint32_t>(edge * edge + NANO_COARSER_TAPS + shares);
-}
 
 /// What all tiles of a picture have in common.
 struct Picture {
@@ -49,6 +45,11 @@ struct Picture {
     SvgfLight results;
     std::map<std::string, ImageHandle> buffers;  ///< all tiles are of one size, and use the same
 };
+
+template <typename T>
+std::span<T> elementsOf(std::span<std::byte> bytes) {
+    return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
+}
 
 class TileRecorder {
   public:
@@ -67,7 +68,12 @@ class TileRecorder {
     }
 
     void record() {
-        ImageHandle channels = features();
+        const ImageHandle first = features();
+        if (input_.host) {
+            mix(computeOnHost(first));
+            return;
+        }
+        ImageHandle channels = first;
         std::array<ImageHandle, NANO_LEVELS> kept;
         for (size_t i = 0; i < NANO_LEVELS; ++i) {
             const NanoLevel& level = network_.levels[i];
@@ -152,6 +158,47 @@ class TileRecorder {
         return channels;
     }
 
+    /// The filtered light, in two texels of single precision for each pixel.
+    ImageHandle computeOnHost(ImageHandle channels) {
+        const ImageHandle light = light_[0], result = texels(name("result"), 0, 2);
+        graph_.host({.pass = name("network") + suffix_,
+                     .reads = {channels, light},
+                     .writes = {result},
+                     .run = [host = input_.host, &network = network_,
+                             tile = tile_](std::span<const std::span<std::byte>> pixels) {
+                         host->run(network, tile, elementsOf<const uint16_t>(pixels[0]),
+                                   elementsOf<const uint16_t>(pixels[1]), elementsOf<float>(pixels[2]));
+                     }});
+        return result;
+    }
+
+    /// Mixes that with SVGF's light.
+    void mix(ImageHandle light) {
+        const SvgfSignalStages &a = svgf_.signals.front(), &b = svgf_.signals.back();
+        const NanoMixParams params{.width = tile_.inner.width,
+                                   .height = tile_.inner.height,
+                                   .innerX = tile_.innerX,
+                                   .innerY = tile_.innerY,
+                                   .pitch = extents_[0].width,
+                                   .strength = picture_.strength};
+        graph_.dispatch({.pass = name("filter", 0) + suffix_,
+                         .shader = choose(shaders::nano_mix_comp, shaders::nano_mix_buffers_comp),
+                         .bindings = {{"light", light},
+                                      {"filteredA", a.filtered},
+                                      {"filteredB", b.filtered},
+                                      {"resultA", picture_.results[0]},
+                                      {"resultB", picture_.results[1]},
+                                      {"stableA", a.stable},
+                                      {"stableB", picture_.stableToo}},
+                         .params = gpu::paramsOf(params),
+                         .constants = mixConstants(),
+                         .extent = tile_.inner});
+    }
+
+    std::vector<gpu::ConstantValue> mixConstants() const {
+        return {{"STABILISE", replacesStable() ? 1u : 0u}, {"TWO_SIGNALS", twoSignals() ? 1u : 0u}};
+    }
+
     /// Without the network's result, SVGF's own stays, which has not been rounded to halves.
     bool replacesStable() const { return svgf_.stabilised && picture_.strength > 0.0f; }
 
@@ -220,7 +267,7 @@ class TileRecorder {
                                       {"light", light_[level]},
                                       {"pooled", light_[level + 1]}},
                          .params = gpu::paramsOf(params),
-                         .constants = {{"LOGIT", poolLogit(level)}},
+                         .constants = {{"LOGIT", nanoPoolLogit(level)}},
                          .extent = extents_[level + 1]});
     }
 
@@ -306,14 +353,20 @@ Picture pictureOf(gpu::FrameGraph& graph, const DenoiserInput& input, const Svgf
             .buffers = {}};
 }
 
+/// What a pixel of a tile takes, about, on the CPU, in single precision: channels of all levels, and light.
+uint64_t hostBytesOfPixel(const NanoNetwork& network) {
+    return uint64_t{16} * network.levels[0].halve.outputs * NANO_GROUP + 64;
+}
+
 /// Channels of the finest level, which take most, fit in a buffer. One tile if none is small enough, so that
 /// what executes the graph says that a buffer is too large.
 std::vector<NanoTile> tilesOf(const Picture& picture) {
-    constexpr uint64_t bytesOfGroup = 16;
+    constexpr uint64_t bytesOfGroup = 16, mostOnHost = uint64_t{640} << 20;
     const uint64_t bytesOfPixel = bytesOfGroup * picture.network.levels[0].halve.outputs;
     const uint32_t reach = nanoReach(picture.network);
-    std::vector<NanoTile> tiles =
-        nanoTiles(picture.extent, reach, picture.input.largestBuffer / bytesOfPixel);
+    uint64_t most = picture.input.largestBuffer / bytesOfPixel;
+    if (picture.input.host) most = std::min(most, mostOnHost / hostBytesOfPixel(picture.network));
+    std::vector<NanoTile> tiles = nanoTiles(picture.extent, reach, most);
     return tiles.empty() ? nanoTiles(picture.extent, reach, UINT64_MAX) : tiles;
 }
 

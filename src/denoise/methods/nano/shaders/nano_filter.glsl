@@ -3,7 +3,6 @@
 #include "denoise/methods/nano/shaders/nano_storage.glsl"
 
 #ifdef LIMPID_NANO_FINEST
-#include "denoise/methods/svgf/shaders/svgf_stable.glsl"
 const int REACH = NANO_FINEST_REACH, GROUPS = NANO_FINEST_LOGIT_GROUPS;
 #else
 const int REACH = NANO_REACH, GROUPS = NANO_LOGIT_GROUPS;
@@ -105,10 +104,10 @@ LightPair filtered(ivec2 at, Logits a, Logits b) {
 }
 
 #ifdef LIMPID_NANO_FINEST
-/// `svgf`: its light, and in the fourth component its deviation; negative: nothing is seen.
-vec4 mixed(vec4 svgf, vec3 own, Logits logits) {
-    const float share = params.strength / (1.0 + exp(logit(logits, ALL_TAPS + 1) - logit(logits, ALL_TAPS)));
-    return svgf.a < 0.0 ? svgf : vec4(mix(svgf.rgb, own, share), svgf.a);
+#include "denoise/methods/nano/shaders/nano_mix.glsl"
+
+float shareOf(Logits logits) {
+    return params.strength / (1.0 + exp(logit(logits, ALL_TAPS + 1) - logit(logits, ALL_TAPS)));
 }
 #endif
 
@@ -130,13 +129,7 @@ void filterPixel(ivec2 written, Logits a, Logits b) {
     const ivec2 at = inTile(written);
     const LightPair own = filtered(at, a, b);
 #ifdef LIMPID_NANO_FINEST
-    const ivec2 to = inPicture(written);
-    const vec4 diffuse = mixed(LOAD_HALF4(filteredA, to), own.diffuse, a);
-    const vec4 specular = mixed(LOAD_HALF4(filteredB, to), own.specular, b);
-    STORE_HALF4(resultA, to, diffuse);
-    STORE_HALF4(resultB, to, specular);
-    if (STABILISE) STORE_UINT1(stableA, to, packedStable(diffuse.rgb));
-    if (STABILISE && TWO_SIGNALS) STORE_UINT1(stableB, to, packedStable(specular.rgb));
+    storeMixed(inPicture(written), own.diffuse, own.specular, vec2(shareOf(a), shareOf(b)));
 #else
     result.texels[uint(at.y) * params.paddedWidth + uint(at.x)] = packLightPair(own);
 #endif
