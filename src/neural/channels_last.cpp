@@ -73,13 +73,14 @@ ChannelsLastConvolution::ChannelsLastConvolution(const ConvolutionShape& shape,
     : impl_(std::make_unique<Impl>(shape)) {
     memory given(floats({shape.outputs, shape.inputs, shape.taps, shape.taps}, memory::format_tag::oihw),
                  impl_->cpu.engine, const_cast<float*>(weights.data()));
-    if (weights.size() != given.get_desc().get_size() / sizeof(float))
-        throw Error("a convolution has weights of another shape");
+    if (weights.size() != given.get_desc().get_size() / sizeof(float) ||
+        (!biases.empty() && biases.size() != shape.outputs))
+        throw Error("a convolution has weights or biases of another shape");
     dnnl::reorder(given, impl_->weights).execute(impl_->cpu.stream, given, impl_->weights);
     impl_->cpu.stream.wait();
     auto* const kept = static_cast<float*>(impl_->biases.get_data_handle());
     std::fill_n(kept, shape.outputs, 0.0f);
-    std::copy_n(biases.begin(), std::min<size_t>(biases.size(), shape.outputs), kept);
+    std::ranges::copy(biases, kept);
 }
 
 ChannelsLastConvolution::~ChannelsLastConvolution() = default;

@@ -19,7 +19,8 @@ struct ConvolutionShape {
 /// A convolution of pictures of one size, in single precision. The channels of a pixel lie side by side.
 class ChannelsLastConvolution {
   public:
-    /// Weights (outputs, inputs, taps, taps), and biases (outputs); no biases are zeros.
+    /// Weights (outputs, inputs, taps, taps), and biases (outputs); no biases are zeros. Throws Error if they
+    /// are of another size.
     ChannelsLastConvolution(const ConvolutionShape& shape, std::span<const float> weights,
                             std::span<const float> biases);
     ~ChannelsLastConvolution();

@@ -10,6 +10,7 @@
 #include "denoise/kpcn/kpcn_params.h"
 #include "denoise/stages/atrous/levels.h"
 #include "denoise/stages/compose/compose.h"
+#include "gpu/graph/elements.h"
 #include "kpcn_distances.comp.h"
 #include "kpcn_features.comp.h"
 #include "kpcn_features_float.comp.h"
@@ -94,11 +95,6 @@ uint32_t divisor(uint32_t count, uint32_t max) {
         if (count % d == 0) return d;
     }
     return 1;
-}
-
-template <typename T>
-std::span<T> elementsOf(std::span<std::byte> bytes) {
-    return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
 }
 
 struct Tile {
@@ -293,9 +289,9 @@ class Recorder {
                      .writes = {clean},
                      .run = [&host = network_.host(), side, part, first,
                              pitch = picture_.width](std::span<const std::span<std::byte>> pixels) {
-                         host.run(side, part, elementsOf<float>(pixels[0]), elementsOf<float>(pixels[1]),
-                                  elementsOf<uint32_t>(pixels[2]),
-                                  elementsOf<float>(pixels[3]).subspan(first), pitch);
+                         host.run(side, part, gpu::elementsOf<float>(pixels[0]),
+                                  gpu::elementsOf<float>(pixels[1]), gpu::elementsOf<uint32_t>(pixels[2]),
+                                  gpu::elementsOf<float>(pixels[3]).subspan(first), pitch);
                      }});
     }
 

@@ -37,7 +37,7 @@ namespace {
 /// Rows of the output layer that are computed at a time. With 441 channels, they take about 2 MB for every 64
 /// pixels of width.
 constexpr uint32_t bandRows = 16;
-/// The logit of taps that are excluded.
+/// The logit of taps that are excluded: their weight is e^leastExponent.
 constexpr float noLogit = -1e30f;
 
 /// The unpacked normals of a part of the picture (features.faces() in training/limpid_training/features.py).
@@ -82,8 +82,8 @@ class RowOfMeans {
           faces_(faces),
           sums_(6 * size_t{tile.columns}) {}
 
-    /// `logits`: (channels, count, columns). Uses their row `row`, which is row `y` of the part. Overwrites
-    /// the logits of taps that are excluded because of their normal.
+    /// `logits`: (channels, count, columns). Uses their row `row`, which is row `y` of the part, and
+    /// overwrites it.
     void compute(std::span<float> logits, uint32_t count, uint32_t row, uint32_t y, float* clean) {
         const size_t n = tile_.columns;
         std::fill(sums_.begin(), sums_.end(), 0.0f);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "denoise/methods/nano/nano_tiles.h"
 #include "denoise/nano_host/host_layers.h"
 
 namespace limpid::denoise {
@@ -25,10 +26,10 @@ class HostFilter {
   private:
     struct Level {
         gpu::Extent extent;
-        uint32_t channels = 0, logits = 0;  ///< logits: of both signals
+        uint32_t channels = 0, logits = 0;  ///< of a pixel; logits of both signals
         std::vector<HostLight> light, result;
-        std::vector<float>
-            pool;  ///< the bias and the weights of the logit of the coarser level, for each signal
+        /// For each signal, the bias and the weights of the logit of the coarser level.
+        std::vector<float> pool;
         uint32_t bandRows = 0;  ///< whose logits are made at a time
         std::vector<float> band;
         std::optional<neural::ChannelsLastConvolution> logitsOfBand;

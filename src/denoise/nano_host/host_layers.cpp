@@ -1,6 +1,5 @@
 #include "denoise/nano_host/host_layers.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -135,7 +134,10 @@ void HostLayers::makeUp(const NanoNetwork& network, size_t i) {
 void HostLayers::run(std::span<const uint16_t> channels) {
     std::vector<float>& finest = levels_[0].kept;
     if (channels.size() < finest.size()) throw Error("a network's channels are fewer than its tile's");
-    toFloats(channels.first(finest.size()), finest);
+    const size_t row = finest.size() / levels_[0].extent.height;
+    tbb::parallel_for(0u, levels_[0].extent.height, [&](uint32_t y) {
+        toFloats(channels.subspan(y * row, row), std::span(finest).subspan(y * row, row));
+    });
     for (size_t i = 0; i < NANO_LEVELS; ++i) {
         Level& level = levels_[i];
         if (i > 0) level.halve->run(levels_[i - 1].kept, level.kept);

@@ -48,13 +48,22 @@ class OneDnnHost : public NanoHost {
         if (found != kept_.end()) {
             kept_.splice(kept_.begin(), kept_, found);
         } else {
-            while (kept_.size() >= most) kept_.pop_back();
+            while (!kept_.empty() && bytes() + bytesOf(network, extent) > mostBytes) kept_.pop_back();
             kept_.emplace_front(network, extent);
         }
         return kept_.front();
     }
 
-    static constexpr size_t most = 2;
+    static uint64_t bytesOf(const NanoNetwork& network, gpu::Extent extent) {
+        return uint64_t{extent.width} * extent.height * bytesOfPixel(network) + bandBytes;
+    }
+    uint64_t bytes() const {
+        uint64_t sum = 0;
+        for (const Prepared& prepared : kept_) sum += bytesOf(*prepared.network, prepared.extent);
+        return sum;
+    }
+
+    static constexpr uint64_t bandBytes = uint64_t{32} << 20;  ///< HostFilter's
     std::mutex mutex_;
     std::list<Prepared> kept_;  ///< the last one used first
 };

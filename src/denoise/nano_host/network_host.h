@@ -5,8 +5,8 @@
 
 namespace limpid::denoise {
 
-/// The one of this process. It keeps layers and memory of the last two sizes. Null if Limpid was built
-/// without oneDNN.
+/// The host of this process. Until it ends, it keeps the layers and the memory of the last sizes of tiles, of
+/// about NanoHost::mostBytes in all. Null if Limpid was built without oneDNN.
 NanoHost* networkHost();
 
 }  // namespace limpid::denoise

@@ -204,9 +204,9 @@ class FrameGraph {
     void resetHistories();
 
     /// Makes execute() interruptible on CPUs, whose frames can take seconds: it cuts the frame into short
-    /// submissions that it waits for, asks `interrupted` between them on its own thread, and throws
-    /// Interrupted if that returns true. Histories are undefined then: use another graph. None (the default):
-    /// frames run as a whole. Other devices ignore it.
+    /// submissions that it waits for, asks `interrupted` between them and after passes on the host, on its
+    /// own thread, and throws Interrupted if that returns true. Histories are undefined then: use another
+    /// graph. None (the default): frames run as a whole. Other devices ignore it.
     void setInterruption(std::function<bool()> interrupted);
 
     /// From the next dispatch on, replaces shaders by those of the same name. They must outlive their use,

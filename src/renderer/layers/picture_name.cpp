@@ -11,7 +11,8 @@ namespace limpid {
 
 std::optional<float> parseExposure(const std::string& text) {
     if (text == "auto") return std::nullopt;
-    const std::string_view number = std::string_view(text).substr(text.starts_with('+') ? 1 : 0);
+    const bool plus = text.starts_with('+') && !text.starts_with("+-");
+    const std::string_view number = std::string_view(text).substr(plus ? 1 : 0);
     float stops = 0.0f;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), stops);
     // 2^stops, and radiance multiplied by it, must stay within the range of a float.

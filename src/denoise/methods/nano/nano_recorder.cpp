@@ -11,6 +11,7 @@
 #include "denoise/methods/nano/nano_host.h"
 #include "denoise/methods/nano/nano_matrices.h"
 #include "denoise/methods/nano/nano_tiles.h"
+#include "gpu/graph/elements.h"
 #include "nano_convolve.comp.h"
 #include "nano_convolve_buffers.comp.h"
 #include "nano_features.comp.h"
@@ -45,11 +46,6 @@ struct Picture {
     SvgfLight results;
     std::map<std::string, ImageHandle> buffers;  ///< all tiles are of one size, and use the same
 };
-
-template <typename T>
-std::span<T> elementsOf(std::span<std::byte> bytes) {
-    return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
-}
 
 class TileRecorder {
   public:
@@ -166,8 +162,9 @@ class TileRecorder {
                      .writes = {result},
                      .run = [host = input_.host, &network = network_,
                              tile = tile_](std::span<const std::span<std::byte>> pixels) {
-                         host->run(network, tile, elementsOf<const uint16_t>(pixels[0]),
-                                   elementsOf<const uint16_t>(pixels[1]), elementsOf<float>(pixels[2]));
+                         host->run(network, tile, gpu::elementsOf<const uint16_t>(pixels[0]),
+                                   gpu::elementsOf<const uint16_t>(pixels[1]),
+                                   gpu::elementsOf<float>(pixels[2]));
                      }});
         return result;
     }
@@ -353,19 +350,15 @@ Picture pictureOf(gpu::FrameGraph& graph, const DenoiserInput& input, const Svgf
             .buffers = {}};
 }
 
-/// What a pixel of a tile takes, about, on the CPU, in single precision: channels of all levels, and light.
-uint64_t hostBytesOfPixel(const NanoNetwork& network) {
-    return uint64_t{16} * network.levels[0].halve.outputs * NANO_GROUP + 64;
-}
-
 /// Channels of the finest level, which take most, fit in a buffer. One tile if none is small enough, so that
 /// what executes the graph says that a buffer is too large.
 std::vector<NanoTile> tilesOf(const Picture& picture) {
-    constexpr uint64_t bytesOfGroup = 16, mostOnHost = uint64_t{640} << 20;
+    constexpr uint64_t bytesOfGroup = 16;
     const uint64_t bytesOfPixel = bytesOfGroup * picture.network.levels[0].halve.outputs;
     const uint32_t reach = nanoReach(picture.network);
     uint64_t most = picture.input.largestBuffer / bytesOfPixel;
-    if (picture.input.host) most = std::min(most, mostOnHost / hostBytesOfPixel(picture.network));
+    if (picture.input.host)
+        most = std::min(most, NanoHost::mostBytes / NanoHost::bytesOfPixel(picture.network));
     std::vector<NanoTile> tiles = nanoTiles(picture.extent, reach, most);
     return tiles.empty() ? nanoTiles(picture.extent, reach, UINT64_MAX) : tiles;
 }

@@ -392,8 +392,12 @@ void FrameExecutor::runOnHost(const RecordedFrame& frame, size_t index, FrameSlo
     memoryBarrier(*context_, slot.commands(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                   VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT);
-    slot.flush();
+    if (slices_)
+        submitSlice(slot);
+    else
+        slot.flush();
     frame.dispatches[index].host(pixels);  // its writes are visible to everything submitted afterwards
+    if (slices_ && slices_->interrupted()) throw Interrupted();
 }
 
 void FrameExecutor::recordDispatch(const RecordedFrame& frame, size_t index, FrameSlot& slot) {

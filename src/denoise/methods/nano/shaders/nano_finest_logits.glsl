@@ -1,4 +1,4 @@
-// As nano_logits.glsl, for the finest level. `finest` and `inputs` are declared beforehand, and INPUT_GROUPS, the groups of
+// As nano_logits.glsl, for the finest level. Declared beforehand: `finest`, `inputs`, and INPUT_GROUPS, the groups of
 // channels.
 
 /// Eight logits of each pixel.
