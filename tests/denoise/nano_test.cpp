@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "base/divide_up.h"
 #include "base/half.h"
 #include "denoise/methods/film/film_network.h"
 #include "denoise/methods/nano/nano_network.h"
@@ -374,7 +375,7 @@ TEST_F(NanoTest, WithoutStrengthItIsSvgf) {
 void NanoTest::compareTiles(const Case& c) {
     method_ = c.method;
     const uint64_t bytesOfPixel = isFilm() ? 96 : 32;
-    const auto padded = [](uint32_t size) { return uint64_t{size} + 15 & ~uint64_t{15}; };
+    const auto padded = [](uint32_t size) { return uint64_t{16} * divideUp(size, 16); };
     std::vector<std::vector<float>> pictures;
     // Three quarters of the longer side.
     for (const uint64_t pixels : {UINT64_MAX / bytesOfPixel, padded(c.columns) * padded(c.rows) * 3 / 4}) {
