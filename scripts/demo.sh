@@ -12,7 +12,7 @@ scripts/build.sh release:limpid -DLIMPID_TESTS=OFF -DLIMPID_PCH=ON -DLIMPID_UNIT
 
 mkdir -p out
 build/release/limpid bench quality --scene builtin:cornell --scene builtin:cornell-moving --width 256 --height 144 \
-    --frames 16 --first 14 --reference-spp 384 --denoiser temporal --denoiser svgf --denoiser nano --out out \
+    --frames 16 --first 14 --reference-spp 512 --denoiser temporal --denoiser svgf --denoiser nano --out out \
     --report out/quality.html | tee out/quality.txt
 echo
 build/release/limpid bench quality --scene builtin:cornell --width 240 --height 136 --first 0 --frames 1 --spp 32 \
