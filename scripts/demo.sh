@@ -16,7 +16,7 @@ build/release/limpid bench quality --scene builtin:cornell --scene builtin:corne
     --report out/quality.html | tee out/quality.txt
 echo
 build/release/limpid bench quality --scene builtin:cornell --width 240 --height 136 --first 0 --frames 1 --spp 32 \
-    --reference-spp 512 --denoiser svgf --denoiser film --denoiser kpcn --out out/network | tee out/network.txt
+    --reference-spp 768 --denoiser svgf --denoiser film --denoiser kpcn --out out/network | tee out/network.txt
 echo
 build/release/limpid bench convergence --scene builtin:cornell --width 240 --height 136 \
     --spp 1024 --out out | tee out/convergence.txt
