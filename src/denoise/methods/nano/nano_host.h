@@ -16,7 +16,7 @@ class NanoHost {
         return uint64_t{16} * network.levels[0].halve.outputs * NANO_GROUP + 64;
     }
     /// Tiles should take no more.
-    static constexpr uint64_t mostBytes = uint64_t{640} << 20;
+    static constexpr uint64_t mostBytes = uint64_t{704} << 20;
 
     virtual ~NanoHost() = default;
 
