@@ -1,6 +1,8 @@
 #include "denoise/nano_host/network_host.h"
 
 #ifdef LIMPID_HAVE_ONEDNN
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <list>
 #include <mutex>
@@ -37,8 +39,11 @@ class OneDnnHost : public NanoHost {
              std::span<const uint16_t> light, std::span<float> result) override {
         const std::lock_guard lock(mutex_);
         Prepared& prepared = prepare(network, tile.extent);
-        prepared.layers.run(channels);
-        prepared.filter.run(prepared.layers, tile, light, result);
+        // While a thread waits in here for TBB, it must not begin a task that comes for the mutex, too.
+        tbb::this_task_arena::isolate([&] {
+            prepared.layers.run(channels);
+            prepared.filter.run(prepared.layers, tile, light, result);
+        });
     }
 
   private:

@@ -171,7 +171,6 @@ class TileRecorder {
 
     /// Mixes that with SVGF's light.
     void mix(ImageHandle light) {
-        const SvgfSignalStages &a = svgf_.signals.front(), &b = svgf_.signals.back();
         const NanoMixParams params{.width = tile_.inner.width,
                                    .height = tile_.inner.height,
                                    .innerX = tile_.innerX,
@@ -180,16 +179,23 @@ class TileRecorder {
                                    .strength = picture_.strength};
         graph_.dispatch({.pass = name("filter", 0) + suffix_,
                          .shader = choose(shaders::nano_mix_comp, shaders::nano_mix_buffers_comp),
-                         .bindings = {{"light", light},
-                                      {"filteredA", a.filtered},
-                                      {"filteredB", b.filtered},
-                                      {"resultA", picture_.results[0]},
-                                      {"resultB", picture_.results[1]},
-                                      {"stableA", a.stable},
-                                      {"stableB", picture_.stableToo}},
+                         .bindings = withMixed({{"light", light}}),
                          .params = gpu::paramsOf(params),
                          .constants = mixConstants(),
                          .extent = tile_.inner});
+    }
+
+    /// What nano_mix.glsl declares, beside other bindings.
+    std::vector<gpu::Binding> withMixed(std::vector<gpu::Binding> bindings) const {
+        const SvgfSignalStages &a = svgf_.signals.front(), &b = svgf_.signals.back();
+        for (const gpu::Binding& binding : {gpu::Binding{"filteredA", a.filtered},
+                                            {"filteredB", b.filtered},
+                                            {"resultA", picture_.results[0]},
+                                            {"resultB", picture_.results[1]},
+                                            {"stableA", a.stable},
+                                            {"stableB", picture_.stableToo}})
+            bindings.push_back(binding);
+        return bindings;
     }
 
     std::vector<gpu::ConstantValue> mixConstants() const {
@@ -285,25 +291,17 @@ class TileRecorder {
     }
 
     void finest(ImageHandle channels, ImageHandle coarser) {
-        const SvgfSignalStages &a = svgf_.signals.front(), &b = svgf_.signals.back();
         NanoFinestParams params{.level = filterParams(0), .logits = {}};
         std::ranges::copy(network_.finestLogits, params.logits);
-        graph_.dispatch({.pass = name("filter", 0) + suffix_,
-                         .shader = choose(shaders::nano_finest_comp, shaders::nano_finest_buffers_comp),
-                         .bindings = {{"inputs", channels},
-                                      {"light", light_[0]},
-                                      {"coarser", coarser},
-                                      {"filteredA", a.filtered},
-                                      {"filteredB", b.filtered},
-                                      {"resultA", picture_.results[0]},
-                                      {"resultB", picture_.results[1]},
-                                      {"stableA", a.stable},
-                                      {"stableB", picture_.stableToo}},
-                         .params = gpu::paramsOf(params),
-                         .constants = {{"STABILISE", replacesStable() ? 1u : 0u},
-                                       {"TWO_SIGNALS", twoSignals() ? 1u : 0u},
-                                       {"INPUT_GROUPS", network_.levels[0].logits.inputs}},
-                         .extent = filterThreads(tile_.inner)});
+        std::vector<gpu::ConstantValue> constants = mixConstants();
+        constants.push_back({"INPUT_GROUPS", network_.levels[0].logits.inputs});
+        graph_.dispatch(
+            {.pass = name("filter", 0) + suffix_,
+             .shader = choose(shaders::nano_finest_comp, shaders::nano_finest_buffers_comp),
+             .bindings = withMixed({{"inputs", channels}, {"light", light_[0]}, {"coarser", coarser}}),
+             .params = gpu::paramsOf(params),
+             .constants = constants,
+             .extent = filterThreads(tile_.inner)});
     }
 
     Picture& picture_;
